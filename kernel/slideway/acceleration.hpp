@@ -1,0 +1,369 @@
+// Accelerations and all forces of one instant, and the check that they satisfy the equations.
+//
+// The check does not reuse M, its factor or the rows: it adds up forces and moments body by body (Newton and Euler) and
+// measures the accelerations of the contact points. What the driven coordinates then lack is the drives' force.
+#pragma once
+
+#include <slideway/friction.hpp>
+
+namespace slideway {
+
+struct Solving {
+  Gains gains;
+  HlcpOptions hlcp;
+  bool at_start;  ///< of a step: a guide whose speed is all rounding counts as at rest
+};
+
+template <class Size>
+struct Work {
+  Kinematics<Size> kinematics;
+  Dynamics<Size> dynamics;
+  Friction<Size> friction;
+  HlcpSolution<Friction<Size>::n_contacts> contact_forces;
+  double prescribed[at_least_one(Size::coordinates)];
+  double u[at_least_one(Size::coordinates)];      ///< G q''
+  double scale[at_least_one(Size::coordinates)];  ///< sum of |terms| of u: the rounding scale of its entries
+  double pi[Friction<Size>::n_ideal];
+};
+
+/// What a guide does to its slider, gathered at the first contact: lambda_0 + lambda_1 along n, friction along t, and
+/// the couple along lambda_1 - across friction_1.
+struct GuideForce {
+  double normal, friction, couple;
+  double Lambda;  ///< sum of |lambda|
+};
+
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE GuideForce guide_force(const Source& source, const Friction<Size>& fr, const Reaction<Size>& r,
+                                       int g) noexcept {
+  const int c = source.tables.first_contact[g];
+  const double sigma = source.tables.is_rough[g] ? fr.sigma[g] : 0;
+  const double size = std::fabs(r.lambda[c]);
+  if (source.scene.guide[g].contacts == 1) return {r.lambda[c], sigma * size, 0, size};
+  const double size_1 = std::fabs(r.lambda[c + 1]), Lambda = size + size_1;
+  return {r.lambda[c] + r.lambda[c + 1], sigma * Lambda,
+          fr.sliding[g].along * r.lambda[c + 1] - fr.sliding[g].across * (sigma * size_1), Lambda};
+}
+
+/// u, its rounding scale and pi from the contact forces.  [friction.hpp]
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work<Size>& w) noexcept {
+  const auto& table = source.tables;
+  const Friction<Size>& fr = w.friction;
+  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
+    w.u[f] = fr.free_motion[f];
+    w.scale[f] = std::fabs(fr.free_motion[f]);
+  });
+  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    if (!table.is_rough[g]) return;
+    const Link<Size>& link = table.guide[g];
+    const GuideForce force = guide_force(source, fr, r, g);
+    const bool two = source.scene.guide[g].contacts == 2;
+    for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
+      const int f = link.fill[e];
+      const double normal = fr.N[g][f] * force.normal, tangential = fr.T[g][f] * force.friction;
+      double term = normal + tangential, size = std::fabs(fr.N[g][f]) * force.Lambda + std::fabs(tangential);
+      if (two) {
+        const double couple = fr.E[g][f] * force.couple;
+        term += couple;
+        size += std::fabs(couple);
+      }
+      w.u[f] += term;
+      w.scale[f] += size;
+    });
+  });
+  if (table.ideal == 0) return;
+  constexpr int capacity = Friction<Size>::ideal;
+  for_each<Source, capacity>(table.ideal,
+                             [&](int i) SLIDEWAY_FOLD { w.pi[i] = fr.e[i] - inner(source, fr.Q[i], w.u); });
+  for_each<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD { add_scaled(source, w.pi[i], fr.Q[i], w.u); });
+  double size = 0;
+  for_each_down<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD {
+    w.pi[i] /= fr.R[i][i];
+    for_each<Source, capacity>(i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
+    size += fr.ideal_norm[i] * std::fabs(w.pi[i]);
+  });
+  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { w.scale[f] += size; });
+}
+
+/// Friction of all guides into the reaction; false when it does not oppose the slip.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool rub(const Source& source, const signed char* mode, const Friction<Size>& fr,
+                         Reaction<Size>& r) noexcept {
+  bool opposes = true;
+  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    r.friction[g] = guide_force(source, fr, r, g).friction;
+    opposes = opposes && r.friction[g] * r.slip[g] <= 0 && r.friction[g] * mode[g] <= 0;
+  });
+  return opposes;
+}
+
+/// A body's share of the check: what the free accelerations and the constraint forces give it.
+template <class Size>
+struct Balance {
+  static constexpr int n_bodies = at_least_one(Size::bodies);
+  double alpha[n_bodies];  ///< by the free coordinates
+  Vec2 a[n_bodies];
+  Wrench wrench[n_bodies];
+};
+
+/// Accelerations that the free q'' add to each body, and the inertia forces against them. Linear in the bodies.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void add_free_motion(const Source& source, const Work<Size>& w, const double* qdd,
+                                     Balance<Size>& balance) noexcept {
+  const auto& scene = source.scene;
+  const auto& table = source.tables;
+  const Kinematics<Size>& k = w.kinematics;
+  for_each<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD {
+    const Body& body = scene.body[i];
+    const int p = body.parent, j = table.first[i];
+    const bool planar = body.joint == Joint::planar, slides = planar || body.joint == Joint::prismatic;
+    const bool turns = planar || body.joint == Joint::revolute;
+    const int turn_j = planar ? j + 2 : j;
+    const bool carried_round = p != ground && table.freely_turning[p];
+    const bool free_turn = turns && table.free_of[turn_j] != none;
+    balance.alpha[i] = !free_turn      ? (carried_round ? balance.alpha[p] : 0)
+                       : carried_round ? balance.alpha[p] + qdd[turn_j]
+                                       : qdd[turn_j];
+    Sum a;
+    if (p != ground && table.freely_moving[p]) a.add(balance.a[p]);
+    if (carried_round && (slides || table.at[i].any())) a.add(balance.alpha[p] * perp(k.arm[i]));
+    if (slides && table.free_of[j] != none) a.add(qdd[j] * axis(k.frame[i], Motion::slide_x));
+    if (planar && table.free_of[j + 1] != none) a.add(qdd[j + 1] * axis(k.frame[i], Motion::slide_y));
+    balance.a[i] = a.value;
+
+    const bool off = table.com[i].any();
+    Sum force;
+    double moment = 0;
+    if (table.freely_turning[i]) {
+      moment = -table.origin_inertia[i] * balance.alpha[i];
+      if (off) force.add(-balance.alpha[i] * perp(w.dynamics.own_moment[i]));
+    }
+    if (table.freely_moving[i]) {
+      force.add(-body.mass * balance.a[i]);
+      if (off) moment -= cross(w.dynamics.own_moment[i], balance.a[i]);
+    }
+    balance.wrench[i] = {force.value, moment};
+  });
+}
+
+/// Acceleration that the free q'' give to the point of body i at rho.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE Vec2 free_acceleration(const Source& source, const Balance<Size>& balance, int i, Vec2 rho) noexcept {
+  if (i == ground) return {};
+  Sum a;
+  if (source.tables.freely_moving[i]) a.add(balance.a[i]);
+  if (source.tables.freely_turning[i]) a.add(balance.alpha[i] * perp(rho));
+  return a.value;
+}
+
+template <class Size>
+SLIDEWAY_INLINE void push(Balance<Size>& balance, int i, Vec2 rho, Vec2 force, double couple,
+                          bool has_couple) noexcept {
+  if (i == ground) return;
+  balance.wrench[i].force = balance.wrench[i].force + force;
+  balance.wrench[i].moment += has_couple ? cross(rho, force) + couple : cross(rho, force);
+}
+
+/// Smallest normal number: keeps the quotient of a vanishing residual by a vanishing scale at zero.
+inline constexpr double tiny = 0x1p-1022;
+
+/// Guide g in the self-check: its forces onto the slider and the rail, its power, and the residual of its rows over
+/// their rounding scale.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& fr, const double* scale,
+                                   double whole_scale, int g, Reaction<Size>& r, Balance<Size>& balance) noexcept {
+  const auto& table = source.tables;
+  const Guide& guide = source.scene.guide[g];
+  const Sliding& s = fr.sliding[g];
+  const int c = table.first_contact[g], rail = guide.rail, slider = guide.slider;
+  const bool two = guide.contacts == 2, rough = table.is_rough[g];
+  const GuideForce of_guide = guide_force(source, fr, r, g);
+  const Vec2 normal = of_guide.normal * s.n, force = rough ? normal + of_guide.friction * s.t : normal;
+  push(balance, slider, s.on_slider, force, of_guide.couple, two);
+  push(balance, rail, s.on_rail, {-force.x, -force.y}, -of_guide.couple, two);
+
+  Vec2 relative = free_acceleration(source, balance, slider, s.on_slider);
+  if (rail != ground) relative = relative - free_acceleration(source, balance, rail, s.on_rail);
+  const double accelerated = dot(s.n, relative);
+  double row_scale = 0, turning_scale = 0;
+  if (rough) {
+    for_each<Source, Size::coordinates>(table.guide[g].fills, [&](int e) SLIDEWAY_FOLD {
+      const int f = table.guide[g].fill[e];
+      row_scale += std::fabs(fr.N[g][f]) * scale[f];
+      if (two) turning_scale += std::fabs(fr.E[g][f]) * scale[f];
+    });
+  } else {
+    row_scale = fr.ideal_norm[table.row_of[c]] * whole_scale;
+    if (two) turning_scale = fr.ideal_norm[table.row_of[c] + 1] * whole_scale;
+  }
+  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + row_scale + tiny);
+  r.power.dissipated -= of_guide.friction * s.slip[0];
+  r.power.constraint_work += r.lambda[c] * s.Phi_rate[0];
+  if (two) {
+    const double turning = rail == ground ? balance.alpha[slider] : balance.alpha[slider] - balance.alpha[rail];
+    const double row_scale_1 = row_scale + (rough ? std::fabs(s.along) : 1) * turning_scale;
+    residual += std::fabs(accelerated + s.along * turning - fr.target[c + 1]) /
+                (std::fabs(fr.target[c + 1]) + row_scale_1 + tiny);
+    const double friction_1 = rough ? fr.sigma[g] * std::fabs(r.lambda[c + 1]) : 0;
+    r.power.dissipated -= friction_1 * (s.slip[1] - s.slip[0]);
+    r.power.constraint_work += r.lambda[c + 1] * s.Phi_rate[1];
+  }
+  return residual;
+}
+
+/// The self-check: sum over all equations of |residual| / (rounding scale). Fills in the drives' forces and the power.
+///
+/// Rounding scales, from u = G q'' (friction.hpp): entry f of u carries a few eps of scale_f = sum |terms|, and G maps
+/// an error du to one of at most sqrt(M_jj) |du| in row j of the equations of motion (Cauchy and Schwarz with M = G'G),
+/// and N~ to one of sum |N~_f| |du_f| in a contact's row. So rows j are measured in sqrt(M_jj) sum_f scale_f, rows of
+/// contacts in |c| + sum_f |N~_f| scale_f. A sum, not a maximum: it passes NaN on.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& w, Reaction<Size>& r) noexcept {
+  const auto& scene = source.scene;
+  const auto& table = source.tables;
+  const Kinematics<Size>& k = w.kinematics;
+  const Friction<Size>& fr = w.friction;
+  Balance<Size> balance;
+  add_free_motion(source, w, r.acceleration, balance);
+  double residual = 0, scale = 0;
+  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { scale += w.scale[f]; });
+  r.power = {w.dynamics.applied_power, w.dynamics.damper_power, 0};
+
+  for_each<Source, Size::guides>(
+      scene.guides, [&](int g) SLIDEWAY_FOLD { residual += check_guide(source, fr, w.scale, scale, g, r, balance); });
+  for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
+    const Pin& pin = scene.pin[p];
+    push(balance, pin.a, fr.pin_a[p].rho, r.pin[p], 0, false);
+    push(balance, pin.b, fr.pin_b[p].rho, {-r.pin[p].x, -r.pin[p].y}, 0, false);
+    r.power.constraint_work += dot(r.pin[p], fr.pin_a[p].velocity - fr.pin_b[p].velocity);
+  });
+
+  for_each_down<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD {
+    const int p = scene.body[i].parent;
+    if (p == ground) return;
+    balance.wrench[p].force = balance.wrench[p].force + balance.wrench[i].force;
+    balance.wrench[p].moment += balance.wrench[i].moment + cross(k.arm[i], balance.wrench[i].force);
+  });
+  const double inverse_scale = 1 / (scale + tiny);
+  for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
+    const int i = table.body_of[j];
+    const double left = w.dynamics.h[j] + along(table.motion[j], k.frame[i], balance.wrench[i]);
+    if (table.free_of[j] != none) {
+      residual += std::fabs(left) * inverse_scale / std::sqrt(w.dynamics.diagonal[table.free_of[j]]);
+    } else {
+      r.drive[table.drive_of[j]] = -left;
+      r.power.work -= left * v[j];
+    }
+  });
+  return residual;
+}
+
+/// Largest sum of the self-check: one equation's residual is at most eight roundings for each term that enters it (a
+/// product, its sum, and their way through G and back), and there are at most `items` of both. Dimensionless.
+template <class Source>
+constexpr double residual_bound(const Source& source) noexcept {
+  const auto& table = source.tables;
+  const double items = table.coordinates + table.contacts + table.ideal + source.scene.bodies;
+  return 8 * detail::epsilon * items * items;
+}
+
+/// The weaker of two statements about uniqueness.
+constexpr Uniqueness weaker(Uniqueness a, Uniqueness b) noexcept { return a > b ? a : b; }
+
+/// Is the sliding speed zero to rounding? |T q'| <= 4 eps (coordinates + 1) sum_j |T_j q'_j|: each product carries the
+/// roundings of a lever arm (one for each body on its path) and its own. Loops give 1e-17 where they should give 0.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool at_rest(const Source& source, const Work<Size>& w, int g, const double* v, double slip) noexcept {
+  const auto& table = source.tables;
+  const Link<Size>& link = table.guide[g];
+  const Sliding& s = w.friction.sliding[g];
+  double terms = 0;
+  for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
+    const int j = link.column[c], i = table.body_of[j];
+    const Vec2 d = s.place - w.kinematics.origin[i];
+    terms += std::fabs(v[j] * dot(s.t, column(table.motion[j], w.kinematics.frame[i], d, 1)));
+  });
+  return std::fabs(slip) <= 4 * detail::epsilon * (link.columns + 1) * terms;
+}
+
+/// A guide with friction whose slip direction is not known.
+template <class Source>
+SLIDEWAY_INLINE int undecided_guide(const Source& source, const signed char* mode) noexcept {
+  int found = none;
+  for_each<Source, Source::Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    if (source.tables.is_rough[g] && mode[g] == 0 && found == none) found = g;
+  });
+  return found;
+}
+
+/// q'', contact forces, friction, pin and drive forces at (t, q, v), checked (WWZ14 (10)-(19)).
+///
+/// mode, in and out: slip direction per guide; replaced by the sign of the sliding speed where that is not zero.
+/// sign, in and out: of each contact force; the solver's first guess, then the answer's.
+/// tau is the time since the step's start, for live inputs. r is valid only when the status is ok. `report` keeps the
+/// extremes of all calls. Cost: one HLCP and O(bodies + contacts^2).
+template <class Source, class Size = typename Source::Size>
+Status accelerate(const Source& source, double t, double tau, const double* q, const double* v,
+                  const Inputs<Size>& inputs, const Solving& solving, signed char* mode, signed char* sign,
+                  Reaction<Size>& r, Report& report) noexcept {
+  const auto& scene = source.scene;
+  const auto& table = source.tables;
+  Work<Size> w;
+  r.t = t;
+  r.drift_position = r.drift_velocity = 0;
+  prescribe(source, q, v, t, inputs, tau, solving.gains, w.prescribed, r.drift_position, r.drift_velocity);
+  kinematics(source, q, v, w.prescribed, w.kinematics);
+  place_contacts(source, w.kinematics, solving.gains, w.friction, r);
+  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
+    if (r.slip[g] > 0) mode[g] = 1;
+    if (r.slip[g] < 0) mode[g] = -1;
+    if (solving.at_start && at_rest(source, w, g, v, r.slip[g])) mode[g] = 0;
+  });
+  report.guide = undecided_guide(source, mode);
+  if (report.guide != none) return Status::invalid_input;
+
+  apply_forces(source, w.kinematics, inputs, tau, w.dynamics);
+  gather(source, w.kinematics, w.dynamics);
+  if (!factor_mass(source, w.kinematics, q, v, w.dynamics)) return Status::singular_constraints;
+  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r)) {
+    return Status::singular_constraints;
+  }
+
+  if (table.rough > 0) {
+    for_each<Source, Size::contacts>(
+        table.rough, [&](int m) SLIDEWAY_FOLD { w.contact_forces.sign[m] = sign[table.rough_contact[m]]; });
+    if constexpr (Source::folds) {
+      solve(w.friction.hlcp, std::integral_constant<int, Source::tables.rough>{}, w.contact_forces, solving.hlcp);
+    } else {
+      solve(w.friction.hlcp, static_cast<int>(table.rough), w.contact_forces, solving.hlcp);
+    }
+    report.solves = report.solves > w.contact_forces.solves ? report.solves : w.contact_forces.solves;
+    if (w.contact_forces.status != Status::ok) return w.contact_forces.status;
+    report.uniqueness = weaker(report.uniqueness, w.contact_forces.uniqueness);
+    for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
+      r.lambda[table.rough_contact[m]] = w.contact_forces.x[m];
+      sign[table.rough_contact[m]] = w.contact_forces.sign[m];
+    });
+  }
+  resolve(source, r, w);
+  for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD {
+    if (!table.is_rough[table.guide_of[c]]) r.lambda[c] = w.pi[table.row_of[c]];
+  });
+  for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD { r.pin[p] = {w.pi[2 * p], w.pi[2 * p + 1]}; });
+  from_metric(source, w.dynamics, w.u);
+  for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
+    r.acceleration[j] = table.free_of[j] != none ? w.u[table.free_of[j]] : w.prescribed[j];
+  });
+
+  const bool opposes = rub(source, mode, w.friction, r);
+  const double residual = check(source, v, w, r);
+  report.residual = residual > report.residual ? residual : report.residual;
+  if (solving.at_start) {
+    report.drift_position = r.drift_position;
+    report.drift_velocity = r.drift_velocity;
+  }
+  return opposes && residual <= residual_bound(source) ? Status::ok : Status::inaccurate;
+}
+
+}  // namespace slideway

@@ -1,0 +1,292 @@
+// From the equations of motion to the contact forces' problem: constraint rows in the mass metric, pins and
+// frictionless contacts eliminated, and the HLCP  S lambda + S* |lambda| = b  of the rough contacts (WWZ14 (13)-(19)).
+//
+// With u = G q'' (dynamics.hpp), rows N~ = N G^-1 and so on, the dynamics read
+//   u = h~ + N~' lambda + T~' F + P~' pi,   P~ u = c_P (ideal rows),   N~ u = c_N,   F = sigma |lambda|,
+// sigma = -mu sgn(slip). Gram and Schmidt give P~ = R Q with orthonormal rows Q; with N^ = N~ (I - Q'Q) and
+// u0 = h~ + Q'(e - Q h~), R e = c_P, the unknowns pi drop out:
+//   S = N^ N^',  S*_ij = sigma_j N^_i . T~_j,  b = c_N - N~ u0.
+// The rows of a guide's two contacts differ by the slider's turning against the rail, E: three rows serve for four.
+// No inverse and no Schur complement is formed, so a mass ratio costs no digits beyond those of the rows themselves.
+#pragma once
+
+#include <slideway/dynamics.hpp>
+#include <slideway/hlcp.hpp>
+
+namespace slideway {
+
+template <class Size>
+struct Friction {
+  static constexpr int n_free = at_least_one(Size::coordinates), n_contacts = at_least_one(Size::contacts),
+                       ideal = 2 * Size::pins + Size::contacts, n_ideal = at_least_one(ideal);
+  static constexpr int n_guides = at_least_one(Size::guides);
+  Sliding sliding[n_guides];
+  double target[n_contacts];         ///< c: N q'' = c
+  double N[n_guides][n_free];        ///< N~ of a rough guide's first contact; of its second N~ + along E~
+  double T[n_guides][n_free];        ///< T~ of the first; of the second T~ - across E~
+  double E[n_guides][n_free];        ///< the slider's turning against the rail
+  double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used when there are any
+  double E_clear[n_guides][n_free];
+  double sigma[n_guides];      ///< friction per |lambda|, along the guide
+  double free_motion[n_free];  ///< h~
+  double u0[n_free];
+  double Q[n_ideal][n_free], R[n_ideal][n_ideal], e[n_ideal];
+  double ideal_norm[n_ideal];  ///< |P~_i|
+  Point pin_a[at_least_one(Size::pins)], pin_b[at_least_one(Size::pins)];
+  Hlcp<n_contacts> hlcp;
+};
+
+/// The relative Jacobian row of a link along `direction` at `place`, free coordinates only: added to x.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void add_row(const Source& source, const Kinematics<Size>& k, const Link<Size>& link, Vec2 place,
+                             Vec2 direction, double* x) noexcept {
+  const auto& table = source.tables;
+  for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
+    const int j = link.column[c], f = table.free_of[j], i = table.body_of[j];
+    if (f != none) x[f] = dot(direction, column(table.motion[j], k.frame[i], place - k.origin[i], link.side[c]));
+  });
+}
+
+/// x = 0 on what a link's row reaches.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void clear(const Link<Size>& link, double* x) noexcept {
+  for_each<Source, Size::coordinates>(link.fills, [&](int c) SLIDEWAY_FOLD { x[link.fill[c]] = 0; });
+}
+
+/// The row of a link in the mass metric.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void metric_row(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d,
+                                const Link<Size>& link, Vec2 place, Vec2 direction, double* x) noexcept {
+  clear<Source>(link, x);
+  add_row(source, k, link, place, direction, x);
+  to_metric(source, d, link.fill, link.fills, x);
+}
+
+/// The row E of a link in the mass metric: the rate of a against b.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void turning_row(const Source& source, const Dynamics<Size>& d, const Link<Size>& link,
+                                 double* x) noexcept {
+  const auto& table = source.tables;
+  clear<Source>(link, x);
+  for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
+    const int j = link.column[c], f = table.free_of[j];
+    if (f != none && table.motion[j] == Motion::turn) x[f] = link.side[c];
+  });
+  to_metric(source, d, link.fill, link.fills, x);
+}
+
+/// sum x_f y_f over the free coordinates.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double inner(const Source& source, const double* x, const double* y) noexcept {
+  double sum = 0;
+  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { sum += x[f] * y[f]; });
+  return sum;
+}
+
+/// y += s x over the free coordinates.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void add_scaled(const Source& source, double s, const double* x, double* y) noexcept {
+  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { y[f] += s * x[f]; });
+}
+
+/// A row whose distance from the span of the earlier ones is below this part of its length is redundant: the distance
+/// carries an error of a few eps per coordinate and row, so that at this bound no digit of it is left. Dimensionless.
+template <class Source>
+constexpr double rank_bound(const Source& source) noexcept {
+  return 8 * detail::epsilon * (source.tables.free + source.tables.ideal);
+}
+
+/// Takes row m of Q (as P~_m) into the orthonormal set of the rows before it: twice, which is enough (Giraud and
+/// others 2005). False when it is redundant. Cost: 4 m n.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool orthonormalise(const Source& source, Friction<Size>& fr, int m) noexcept {
+  constexpr int capacity = Friction<Size>::ideal;
+  double* row = fr.Q[m];
+  fr.ideal_norm[m] = std::sqrt(inner(source, row, row));
+  for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD { fr.R[m][i] = 0; });
+  for (int pass = 0; pass < 2; ++pass) {
+    for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD {
+      const double part = inner(source, fr.Q[i], row);
+      fr.R[m][i] += part;
+      add_scaled(source, -part, fr.Q[i], row);
+    });
+  }
+  const double rest = std::sqrt(inner(source, row, row));
+  if (!(rest > rank_bound(source) * fr.ideal_norm[m])) return false;
+  fr.R[m][m] = rest;
+  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { row[f] *= 1 / rest; });
+  return true;
+}
+
+/// Pins and frictionless contacts: Q, R, e and u0. False when they are redundant.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool eliminate_ideal(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d,
+                                     Gains gains, Friction<Size>& fr, Reaction<Size>& r) noexcept {
+  const auto& scene = source.scene;
+  const auto& table = source.tables;
+  constexpr int capacity = Friction<Size>::ideal;
+  bool independent = true;
+  for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
+    const Pin& pin = scene.pin[p];
+    const Point a = fr.pin_a[p] = point_at(source, k, pin.a, pin.a_at, {true, true});
+    const Point b = fr.pin_b[p] = point_at(source, k, pin.b, pin.b_at, {true, true});
+    const Vec2 Phi = a.place - b.place, rate = a.velocity - b.velocity, gamma = a.known - b.known;
+    metric_row(source, k, d, table.pin[p], a.place, {1, 0}, fr.Q[2 * p]);
+    metric_row(source, k, d, table.pin[p], a.place, {0, 1}, fr.Q[2 * p + 1]);
+    fr.e[2 * p] = -gamma.x - gains.alpha * rate.x - gains.beta * Phi.x;
+    fr.e[2 * p + 1] = -gamma.y - gains.alpha * rate.y - gains.beta * Phi.y;
+    r.drift_position = larger(r.drift_position, larger(std::fabs(Phi.x), std::fabs(Phi.y)));
+    r.drift_velocity = larger(r.drift_velocity, larger(std::fabs(rate.x), std::fabs(rate.y)));
+  });
+  for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD {
+    const int g = table.guide_of[c];
+    if (table.is_rough[g]) return;
+    const Sliding& sl = fr.sliding[g];
+    const Vec2 place = c == table.first_contact[g] ? sl.place : sl.place + sl.along * sl.t + sl.across * sl.n;
+    metric_row(source, k, d, table.guide[g], place, sl.n, fr.Q[table.row_of[c]]);
+    fr.e[table.row_of[c]] = fr.target[c];
+  });
+  for_each<Source, capacity>(table.ideal, [&](int m) SLIDEWAY_FOLD {
+    if (!independent) return;
+    independent = orthonormalise(source, fr, m);
+    if (!independent) return;
+    for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD { fr.e[m] -= fr.R[m][i] * fr.e[i]; });
+    fr.e[m] /= fr.R[m][m];
+    const double lack = fr.e[m] - inner(source, fr.Q[m], fr.u0);
+    add_scaled(source, lack, fr.Q[m], fr.u0);
+  });
+  return independent;
+}
+
+/// row less its part along the ideal rows.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void clear_of_ideal(const Source& source, const Friction<Size>& fr, const double* row,
+                                    double* rest) noexcept {
+  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { rest[f] = row[f]; });
+  for_each<Source, Friction<Size>::ideal>(source.tables.ideal, [&](int i) SLIDEWAY_FOLD {
+    add_scaled(source, -inner(source, fr.Q[i], rest), fr.Q[i], rest);
+  });
+}
+
+/// Is anything left of the row n + s e when the ideal rows are taken out?
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool survives(const Source& source, const double* n, const double* e, double s, double left) noexcept {
+  double whole = inner(source, n, n);
+  if (s != 0) whole += s * (2 * inner(source, n, e) + s * inner(source, e, e));
+  const double bound = rank_bound(source);
+  return left > bound * bound * whole;
+}
+
+/// Geometry of all contacts, the targets c, the sliding speeds and the drift. Linear in the contacts.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>& k, Gains gains, Friction<Size>& fr,
+                                    Reaction<Size>& r) noexcept {
+  const auto& table = source.tables;
+  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    Sliding& s = fr.sliding[g];
+    sliding(source, k, g, s);
+    r.slip[g] = s.slip[0];
+    for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
+      fr.target[table.first_contact[g] + i] = -s.gamma[i] - gains.alpha * s.Phi_rate[i] - gains.beta * s.Phi[i];
+      r.drift_position = larger(r.drift_position, std::fabs(s.Phi[i]));
+      r.drift_velocity = larger(r.drift_velocity, std::fabs(s.Phi_rate[i]));
+    });
+  });
+}
+
+/// Rows and right side of rough guide g.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, int g,
+                                Friction<Size>& fr) noexcept {
+  const auto& table = source.tables;
+  const Link<Size>& link = table.guide[g];
+  const Sliding& s = fr.sliding[g];
+  const int c = table.first_contact[g], m = table.row_of[c];
+  const bool two = source.scene.guide[g].contacts == 2;
+  metric_row(source, k, d, link, s.place, s.n, fr.N[g]);
+  metric_row(source, k, d, link, s.place, s.t, fr.T[g]);
+  if (two) turning_row(source, d, link, fr.E[g]);
+  if (table.ideal > 0) clear_of_ideal(source, fr, fr.N[g], fr.N_clear[g]);
+  if (table.ideal > 0 && two) clear_of_ideal(source, fr, fr.E[g], fr.E_clear[g]);
+  double moved = 0, turned = 0;
+  for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
+    const int f = link.fill[e];
+    moved += fr.N[g][f] * fr.u0[f];
+    if (two) turned += fr.E[g][f] * fr.u0[f];
+  });
+  fr.hlcp.b[m] = fr.target[c] - moved;
+  if (two) fr.hlcp.b[m + 1] = fr.target[c + 1] - moved - s.along * turned;
+}
+
+/// S and S* between the contacts of rough guides g (rows) and o (columns): with s and f for along and across,
+///   S_ij = NN + s_i EN + s_j NE + s_i s_j EE,  S*_ij = sigma_o (NT + s_i ET - f_j (NE + s_i EE)),  s_0 = f_0 = 0.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void couple(const Source& source, int g, int o, Friction<Size>& fr) noexcept {
+  const auto& table = source.tables;
+  const auto& scene = source.scene;
+  const Link<Size>& link = table.guide[g];
+  const bool two = scene.guide[g].contacts == 2, other_two = scene.guide[o].contacts == 2;
+  const bool clear = table.ideal > 0;
+  const auto& N = clear ? fr.N_clear[g] : fr.N[g];
+  const auto& E = clear ? fr.E_clear[g] : fr.E[g];
+  const auto& N_o = clear ? fr.N_clear[o] : fr.N[o];
+  const auto& E_o = clear ? fr.E_clear[o] : fr.E[o];
+  double NN = 0, NT = 0, EN = 0, ET = 0, NE = 0, EE = 0;
+  for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
+    const int f = link.fill[e];
+    if (!table.guide[o].filled[f]) return;
+    NN += N[f] * N_o[f];
+    NT += N[f] * fr.T[o][f];
+    if (two) EN += E[f] * N_o[f];
+    if (two) ET += E[f] * fr.T[o][f];
+    if (other_two) NE += N[f] * E_o[f];
+    if (two && other_two) EE += E[f] * E_o[f];
+  });
+  const int m = table.row_of[table.first_contact[g]], w = table.row_of[table.first_contact[o]];
+  const double sigma = fr.sigma[o], s = fr.sliding[g].along, s_o = fr.sliding[o].along, f_o = fr.sliding[o].across;
+  const auto set = [&](int i, int j, double S, double S_star) SLIDEWAY_FOLD {
+    fr.hlcp.plus[m + i][w + j] = S + S_star;
+    fr.hlcp.minus[m + i][w + j] = S - S_star;
+  };
+  set(0, 0, NN, sigma * NT);
+  if (two) set(1, 0, NN + s * EN, sigma * (NT + s * ET));
+  if (other_two) set(0, 1, NN + s_o * NE, sigma * (NT - f_o * NE));
+  if (two && other_two) {
+    set(1, 1, NN + s * EN + s_o * (NE + s * EE), sigma * (NT + s * ET - f_o * (NE + s * EE)));
+  }
+}
+
+/// The rows, S, S* and b of the rough contacts, given the slip direction of each guide. False when rank is lost.
+/// Cost: guides^2 times the overlap of their paths.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, Gains gains,
+                              const signed char* mode, Friction<Size>& fr, Reaction<Size>& r) noexcept {
+  const auto& scene = source.scene;
+  const auto& table = source.tables;
+  for_each<Source, Size::coordinates>(table.free,
+                                      [&](int f) SLIDEWAY_FOLD { fr.free_motion[f] = d.h[table.free_coordinate[f]]; });
+  to_metric(source, d, table.every, table.free, fr.free_motion);
+  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { fr.u0[f] = fr.free_motion[f]; });
+  bool independent = table.ideal == 0 || eliminate_ideal(source, k, d, gains, fr, r);
+
+  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
+    fr.sigma[g] = mode[g] > 0 ? -scene.guide[g].mu : scene.guide[g].mu;
+    if (table.is_rough[g]) guide_rows(source, k, d, g, fr);
+  });
+  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
+    for_each<Source, Size::guides>(scene.guides, [&](int o) SLIDEWAY_FOLD {
+      if (table.is_rough[g] && table.is_rough[o]) couple(source, g, o, fr);
+    });
+  });
+  if (table.ideal > 0) {
+    for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
+      const int c = table.rough_contact[m], g = table.guide_of[c];
+      const double along = c == table.first_contact[g] ? 0 : fr.sliding[g].along;
+      const double left = 0.5 * (fr.hlcp.plus[m][m] + fr.hlcp.minus[m][m]);
+      independent = independent && survives(source, fr.N[g], fr.E[g], along, left);
+    });
+  }
+  return independent;
+}
+
+}  // namespace slideway

@@ -1,0 +1,324 @@
+// The exact decision of a problem A+ x+ - A- x- = b of order n <= 4: how many solutions, and which signs they have.
+// Rarely needed: only when the tests of hlcp.hpp leave a doubt. Everything is read off the signs of minors of [A+ | A-
+// | b], and those are exact.
+#pragma once
+
+#include <algorithm>
+#include <slideway/hlcp_trial.hpp>
+
+namespace slideway::hlcp_detail {
+
+inline constexpr int decidable = 4;              ///< the largest order that is decided exactly
+inline constexpr int patterns = 1 << decidable;  ///< subsets of its indices
+
+/// A sum of doubles without rounding: parts that do not overlap, in order of increasing size (Shewchuk, Discrete
+/// Comput. Geom. 18, 1997, GROW-EXPANSION). The 24 terms of a 4x4 determinant have at most 8 parts each.
+struct ExactSum {
+  double part[24 * 8];
+  int size = 0;
+
+  void add(double term) noexcept {
+    int kept = 0;
+    for (int i = 0; i < size; ++i) {
+      const double sum = term + part[i];
+      const double shadow = sum - term;
+      const double error = (term - (sum - shadow)) + (part[i] - shadow);
+      if (error != 0.0) part[kept++] = error;
+      term = sum;
+    }
+    if (term != 0.0) part[kept++] = term;
+    size = kept;
+  }
+
+  int sign() const noexcept { return size == 0 ? 0 : (part[size - 1] > 0.0 ? 1 : -1); }
+};
+
+/// Problem data of order n <= 4, scaled to about 1. Exact signs need every nonzero magnitude in [2^-180, 2^220]:
+/// products of four and their errors then neither overflow nor underflow.
+struct Small {
+  double plus[decidable][decidable];
+  double minus[decidable][decidable];
+  double b[decidable];
+  int n;
+  bool within_range;
+};
+
+struct Minor {
+  double a[decidable][decidable];
+  int m;
+};
+
+struct Determinant {
+  double value;
+  double size;  ///< the sum of the magnitudes of all terms (the permanent of |a|)
+};
+
+/// det(a) by expansion along rows over all column subsets; at most 32 products.
+/// |value - det| <= 2^-49 size: level i adds at most i roundings, 1 + 2 + 3 + 4 in all, and 2^-49 = 16 units.
+inline Determinant determinant(const Minor& minor) noexcept {
+  Determinant of[patterns] = {};
+  of[0] = {1.0, 1.0};
+  for (int set = 1; set < (1 << minor.m); ++set) {
+    int row = -1;
+    for (int k = 0; k < minor.m; ++k) row += (set >> k) & 1;
+    Determinant sum = {0.0, 0.0};
+    int after = row;  // columns of the set behind k
+    for (int k = 0; k < minor.m; ++k) {
+      if (((set >> k) & 1) == 0) continue;
+      const double entry = minor.a[row][k];
+      const Determinant& rest = of[set ^ (1 << k)];
+      sum.value += (after & 1) != 0 ? -(entry * rest.value) : entry * rest.value;
+      sum.size += (entry < 0.0 ? -entry : entry) * rest.size;
+      --after;
+    }
+    of[set] = sum;
+  }
+  return of[(1 << minor.m) - 1];
+}
+
+/// sign det(a), exactly: all m! terms as sums of 2^(m-1) doubles. At most 192 additions of at most 192 parts.
+inline int exact_sign(const Minor& minor) noexcept {
+  ExactSum sum;
+  int column[decidable] = {0, 1, 2, 3};
+  for (int term = 0; term < 24; ++term) {
+    int inversions = 0;
+    for (int i = 0; i < minor.m; ++i)
+      for (int k = 0; k < i; ++k) inversions += column[k] > column[i] ? 1 : 0;
+    double part[8] = {(inversions & 1) != 0 ? -1.0 : 1.0};
+    int parts = 1;
+    for (int i = 0; i < minor.m; ++i) {
+      const double entry = minor.a[i][column[i]];
+      for (int k = 0; k < parts && i > 0; ++k) part[parts + k] = product_error(part[k], entry);
+      for (int k = 0; k < parts; ++k) part[k] *= entry;
+      if (i > 0) parts *= 2;
+    }
+    for (int k = 0; k < parts; ++k)
+      if (part[k] != 0.0) sum.add(part[k]);
+    if (!std::next_permutation(column, column + minor.m)) break;
+  }
+  return sum.sign();
+}
+
+struct Sign {
+  int sign;
+  bool frail;  ///< not zero, but indistinguishable from zero in working precision; or not decidable in its range
+};
+
+inline Sign sign_of(const Minor& minor, bool within_range) noexcept {
+  const Determinant det = determinant(minor);
+  const double doubt = 0x1p-49 * det.size;
+  if (det.value > doubt) return {1, false};
+  if (det.value < -doubt) return {-1, false};
+  if (det.size == 0.0 && within_range) return {0, false};
+  if (!within_range) return {0, true};
+  const int sign = exact_sign(minor);
+  return {sign, sign != 0};
+}
+
+/// Column k of W(signs); k = n is b.
+inline double entry(const Small& p, int row, int k, const signed char* signs) noexcept {
+  return k == p.n ? p.b[row] : (signs[k] < 0 ? p.minus[row][k] : p.plus[row][k]);
+}
+
+/// The minor of [W(signs) | b] with the rows and columns given as bit sets of equal size.
+inline Minor minor_of(const Small& p, int rows, const int* columns, int m, const signed char* signs) noexcept {
+  Minor minor = {{}, m};
+  int i = 0;
+  for (int row = 0; row < p.n; ++row) {
+    if (((rows >> row) & 1) == 0) continue;
+    for (int k = 0; k < m; ++k) minor.a[i][k] = entry(p, row, columns[k], signs);
+    ++i;
+  }
+  return minor;
+}
+
+inline int count(int set) noexcept {
+  int members = 0;
+  for (int k = 0; k < decidable; ++k) members += (set >> k) & 1;
+  return members;
+}
+
+/// Rows on which the m columns are independent (0 if there are none), and the sign of that minor; the least doubtful
+/// choice.
+struct Basis {
+  int rows;
+  Sign det;
+};
+
+inline Basis basis_of(const Small& p, const int* columns, int m, const signed char* signs) noexcept {
+  Basis found = {0, {0, false}};
+  for (int rows = 0; rows < (1 << p.n); ++rows) {
+    if (count(rows) != m) continue;
+    const Sign det = sign_of(minor_of(p, rows, columns, m, signs), p.within_range);
+    if (det.sign != 0 && !det.frail) return {rows, det};
+    if (det.sign != 0 || (det.frail && found.rows == 0)) found = {det.sign != 0 ? rows : 0, det};
+  }
+  return found;
+}
+
+/// Whether the columns and one more depend on each other in every row, given that they do in the basis rows.
+inline bool dependent_elsewhere(const Small& p, int basis, const int* columns, int m, const signed char* signs,
+                                bool& frail) noexcept {
+  for (int row = 0; row < p.n; ++row) {
+    if (((basis >> row) & 1) != 0) continue;
+    const Sign det = sign_of(minor_of(p, basis | (1 << row), columns, m, signs), p.within_range);
+    frail = frail || det.frail;
+    if (det.sign != 0) return false;
+  }
+  return true;
+}
+
+struct Vertex {
+  bool exists;
+  bool frail;           ///< a rank on which the answer rests is doubtful in working precision
+  double x[decidable];  ///< by Cramer's rule, rounded
+};
+
+/// Whether there is a solution with exactly the signs sigma in {-1, 0, 1}^n whose columns are independent: a vertex of
+/// the solution set.
+inline Vertex vertex_at(const Small& p, const signed char* sigma) noexcept {
+  Vertex vertex = {false, false, {}};
+  int columns[decidable + 1];
+  int m = 0;
+  for (int k = 0; k < p.n; ++k)
+    if (sigma[k] != 0) columns[m++] = k;
+  const Basis basis = m == 0 ? Basis{0, {1, false}} : basis_of(p, columns, m, sigma);
+  vertex.frail = basis.det.frail;
+  if (basis.det.sign == 0) return vertex;
+  columns[m] = p.n;
+  if (!dependent_elsewhere(p, basis.rows, columns, m + 1, sigma, vertex.frail)) return vertex;
+  const double det = m == 0 ? 1.0 : determinant(minor_of(p, basis.rows, columns, m, sigma)).value;
+  for (int k = 0; k < m; ++k) {
+    const int column = columns[k];
+    columns[k] = p.n;
+    const Minor numerator = minor_of(p, basis.rows, columns, m, sigma);
+    columns[k] = column;
+    if (sign_of(numerator, p.within_range).sign * basis.det.sign != sigma[column]) return vertex;
+    vertex.x[column] = determinant(numerator).value / det;
+  }
+  vertex.exists = true;
+  return vertex;
+}
+
+/// Whether the columns with signs tau != 0 have a null vector with exactly these signs, and no smaller set of them has
+/// one: an extreme ray.
+inline bool ray_at(const Small& p, const signed char* tau, bool& frail) noexcept {
+  int columns[decidable];
+  int m = 0;
+  for (int k = 0; k < p.n; ++k)
+    if (tau[k] != 0) columns[m++] = k;
+  const Basis basis = m == 1 ? Basis{0, {1, false}} : basis_of(p, columns, m - 1, tau);
+  if (basis.det.sign == 0 || !dependent_elsewhere(p, basis.rows, columns, m, tau, frail)) return false;
+  int direction = 0;
+  for (int k = 0; k < m; ++k) {
+    int others[decidable];
+    int size = 0;
+    for (int i = 0; i < m; ++i)
+      if (i != k) others[size++] = columns[i];
+    const int det = m == 1 ? 1 : sign_of(minor_of(p, basis.rows, others, size, tau), p.within_range).sign;
+    const int component = ((k & 1) != 0 ? -det : det) * tau[columns[k]];
+    if (component == 0 || component == -direction) return false;
+    direction = component;
+  }
+  return true;
+}
+
+enum class Decision : unsigned char { certified, single, several, none, doubtful };
+
+/// What is true of a small problem.
+struct Decided {
+  Decision decision;
+  signed char sigma[decidable];  ///< the signs in {-1, 0, 1} of the solution to take
+  double x[decidable];           ///< that solution, roughly
+  bool frail;                    ///< the rank of that solution's columns is doubtful in working precision
+  int determinants;              ///< patterns examined
+};
+
+/// The c-th sign vector: base 2 (+1, -1) or base 3 (+1, -1, 0).
+inline void pattern(int code, int n, int base, signed char* signs) noexcept {
+  constexpr signed char digit[3] = {1, -1, 0};
+  for (int k = 0; k < n; ++k) {
+    signs[k] = digit[code % base];
+    code /= base;
+  }
+}
+
+/// Whether all 2^n determinants of W(s) have one strict sign: the column W-property (Sznajder & Gowda 1995), that is,
+/// one solution for every b.
+inline bool has_w_property(const Small& p, bool& frail) noexcept {
+  constexpr int columns[decidable] = {0, 1, 2, 3};
+  int common = 0;
+  bool holds = true;
+  for (int code = 0; code < (1 << p.n); ++code) {
+    signed char signs[decidable];
+    pattern(code, p.n, 2, signs);
+    const Sign det = sign_of(minor_of(p, (1 << p.n) - 1, columns, p.n, signs), p.within_range);
+    frail = frail || det.frail;
+    if (det.sign == 0 || det.sign == -common) holds = false;
+    common = det.sign;
+  }
+  return holds;
+}
+
+/// Whether no sign of sigma and tau contradicts the other: some orthant contains both.
+inline bool compatible(const signed char* sigma, const signed char* tau, int n) noexcept {
+  for (int k = 0; k < n; ++k)
+    if (sigma[k] * tau[k] < 0) return false;
+  return true;
+}
+
+/// Whether a ray starts at the vertex sigma inside an orthant: a continuum of solutions.
+inline bool has_ray(const Small& p, const signed char* sigma, int codes, bool& frail) noexcept {
+  for (int code = 0; code < codes; ++code) {
+    signed char tau[decidable];
+    pattern(code, p.n, 3, tau);
+    bool zero = true;
+    for (int k = 0; k < p.n; ++k) zero = zero && tau[k] == 0;
+    if (!zero && compatible(sigma, tau, p.n) && ray_at(p, tau, frail)) return true;
+  }
+  return false;
+}
+
+/// Decides A+ x+ - A- x- = b of order n <= 4 as exact arithmetic would.
+/// The solutions with signs in one orthant form a polyhedron without lines; so there are solutions iff there are
+/// vertices, and exactly one iff there is one vertex and no ray of its orthants starts there. Among several it takes
+/// the one with the signs `preferred`, else `second`, else the first. At most 3^n = 81 supports of at most 2 * 6 minors
+/// each.
+inline Decided decide(const Small& p, const signed char* preferred, const signed char* second) noexcept {
+  Decided result = {Decision::none, {}, {}, false, 1 << p.n};
+  bool frail = false;
+  const bool unique = has_w_property(p, frail);
+  int codes = 1;
+  for (int k = 0; k < p.n; ++k) codes *= 3;
+  int found = 0;
+  int sound = 0;
+  int liked = 0;
+  for (int code = 0; code < codes && !(unique && found == 1); ++code) {
+    signed char sigma[decidable];
+    pattern(code, p.n, 3, sigma);
+    const Vertex vertex = vertex_at(p, sigma);
+    frail = frail || (vertex.frail && !vertex.exists);
+    if (!vertex.exists) continue;
+    const int likes = compatible(sigma, preferred, p.n) ? 2 : (compatible(sigma, second, p.n) ? 1 : 0);
+    if (found == 0 || likes > liked) {
+      std::copy(sigma, sigma + p.n, result.sigma);
+      std::copy(vertex.x, vertex.x + p.n, result.x);
+      result.frail = vertex.frail;
+      liked = likes;
+    }
+    ++found;
+    sound += vertex.frail ? 0 : 1;
+  }
+  if (found == 0) {
+    result.decision = frail || !p.within_range ? Decision::doubtful : Decision::none;
+  } else if (unique) {
+    result.decision = Decision::certified;
+  } else if (found > 1 || has_ray(p, result.sigma, codes, frail)) {
+    result.decision = sound >= 1 && (sound >= 2 || found == 1) ? Decision::several : Decision::doubtful;
+  } else {
+    result.decision = p.within_range ? Decision::single : Decision::doubtful;
+  }
+  return result;
+}
+
+}  // namespace slideway::hlcp_detail

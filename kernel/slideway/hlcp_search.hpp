@@ -1,0 +1,427 @@
+// What follows when the signs tried first do not settle a problem: scaling, iteration over sign patterns, exact
+// decision, enumeration.
+#pragma once
+
+#include <slideway/hlcp_decide.hpp>
+#include <slideway/hlcp_trial.hpp>
+
+namespace slideway::hlcp_detail {
+
+template <int Capacity>
+inline void refuse(HlcpSolution<Capacity>& solution, Status status, int solves) noexcept {
+  solution.status = status;
+  solution.uniqueness = status == Status::not_unique ? Uniqueness::refuted : Uniqueness::unproven;
+  solution.solves = solves;
+  solution.residual = 0.0;
+}
+
+template <int Capacity, class Count>
+inline void accept(HlcpSolution<Capacity>& solution, Count n, const double* x, Uniqueness uniqueness, int solves,
+                   double residual) noexcept {
+  for (int k = 0; k < n; ++k) {
+    solution.x[k] = x[k] + 0.0;  // -0 becomes 0
+    solution.sign[k] = static_cast<signed char>(x[k] < 0.0 ? -1 : 1);
+  }
+  solution.status = Status::ok;
+  solution.uniqueness = uniqueness;
+  solution.solves = solves;
+  solution.residual = residual;
+}
+
+/// Every row and the right side brought to about 1 by powers of two; x of the scaled problem times 2^exponent is the
+/// answer.
+template <int Capacity>
+struct Scaled {
+  Hlcp<Capacity> problem;
+  int exponent;
+  bool lost;      ///< a matrix entry below 2^-1022 of its row was rounded
+  Status status;  ///< ok, invalid_input, or inaccurate when a part of b was lost
+};
+
+inline int exponent_of(double value) noexcept {
+  const int field = static_cast<int>((bits(value) >> 52) & 2047);
+  return field != 0 ? field - 1023 : static_cast<int>((bits(value * 0x1p64) >> 52) & 2047) - 1023 - 64;
+}
+
+/// value * 2^k, |k| <= 3000.
+inline double times_power(double value, int k) noexcept {
+  for (int step = 0; step < 3; ++step) {
+    const int part = k > 1000 ? 1000 : (k < -1000 ? -1000 : k);
+    value *= power_of_two(part);
+    k -= part;
+  }
+  return value;
+}
+
+template <int Capacity>
+inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) noexcept {
+  constexpr int none = -5000;
+  int row_exponent[Capacity];
+  scaled.exponent = none;
+  scaled.lost = false;
+  scaled.status = Status::ok;
+  for (int i = 0; i < n; ++i) {
+    double largest = 0.0;
+    bool finite = std::isfinite(given.b[i]);
+    for (int j = 0; j < n; ++j) {
+      finite = finite && std::isfinite(given.plus[i][j]) && std::isfinite(given.minus[i][j]);
+      largest = std::fmax(largest, std::fmax(std::fabs(given.plus[i][j]), std::fabs(given.minus[i][j])));
+    }
+    if (!finite) scaled.status = Status::invalid_input;
+    row_exponent[i] = largest > 0.0 ? exponent_of(largest) : 0;
+    const int relative = given.b[i] != 0.0 ? exponent_of(given.b[i]) - row_exponent[i] : none;
+    scaled.exponent = relative > scaled.exponent ? relative : scaled.exponent;
+  }
+  if (scaled.exponent == none) scaled.exponent = 0;
+  for (int i = 0; i < n; ++i) {
+    const int down = -row_exponent[i];
+    for (int j = 0; j < n; ++j) {
+      scaled.problem.plus[i][j] = times_power(given.plus[i][j], down);
+      scaled.problem.minus[i][j] = times_power(given.minus[i][j], down);
+      scaled.lost = scaled.lost || times_power(scaled.problem.plus[i][j], -down) != given.plus[i][j] ||
+                    times_power(scaled.problem.minus[i][j], -down) != given.minus[i][j];
+    }
+    scaled.problem.b[i] = times_power(given.b[i], down - scaled.exponent);
+    const bool kept = times_power(scaled.problem.b[i], scaled.exponent - down) == given.b[i];
+    if (!kept && scaled.status == Status::ok) scaled.status = Status::inaccurate;
+  }
+}
+
+/// The state of a search over sign patterns: a scaled problem of order n, and what it has cost.
+template <int Capacity>
+struct Search {
+  Scaled<Capacity> scaled;
+  Trial<Capacity> trial;
+  int n;
+  int solves;
+  int max_solves;
+};
+
+template <int Capacity>
+inline bool try_signs(Search<Capacity>& search, const signed char* signs) noexcept {
+  ++search.solves;
+  if constexpr (Capacity > 2)
+    if (search.n > 2) return attempt(search.scaled.problem, search.n, signs, search.trial);
+  return attempt_small(search.scaled.problem, search.n, signs, search.trial);
+}
+
+/// Sets to zero the components of x that are not of the sign sigma in {-1, 0, 1}; whether the residual allows it. If
+/// not, once more after two steps of refinement: what then contradicts is within 2^-52 max|x| of zero.
+template <int Capacity>
+inline bool enforce(Search<Capacity>& search, const signed char* sigma) noexcept {
+  Trial<Capacity>& trial = search.trial;
+  for (int round = 0; round < 2; ++round) {
+    double kept[Capacity];
+    for (int k = 0; k < search.n; ++k) {
+      kept[k] = trial.x[k];
+      if (!(sigma[k] * kept[k] > 0.0)) trial.x[k] = 0.0;
+    }
+    check(search.scaled.problem, search.n, trial);
+    if (trial.accurate) return true;
+    for (int k = 0; k < search.n; ++k) trial.x[k] = kept[k];
+    for (int step = 0; step < 2 && round == 0; ++step) refine(search.scaled.problem, search.n, trial);
+  }
+  return false;
+}
+
+/// Whether x has the signs, up to components below tie_window of the largest that contradict by rounding: these become
+/// zero.
+template <int Capacity>
+inline bool settle(Search<Capacity>& search, const signed char* signs) noexcept {
+  const Trial<Capacity>& trial = search.trial;
+  double largest = 0.0;
+  bool same = true;
+  for (int k = 0; k < search.n; ++k) largest = std::fmax(largest, std::fabs(trial.x[k]));
+  for (int k = 0; k < search.n; ++k) {
+    const double along = signs[k] * trial.x[k];
+    if (along < -tie_window * largest) return false;
+    same = same && along >= 0.0;
+  }
+  return same || enforce(search, signs);
+}
+
+/// The signs of x; of a zero, the one it had.
+template <int Capacity>
+inline void take_signs(const Search<Capacity>& search, signed char* signs) noexcept {
+  for (int k = 0; k < search.n; ++k) {
+    if (search.trial.x[k] < 0.0) signs[k] = -1;
+    if (search.trial.x[k] > 0.0) signs[k] = 1;
+  }
+}
+
+inline std::uint32_t code_of(const signed char* signs, int n) noexcept {
+  std::uint32_t code = 0;
+  for (int k = 0; k < n; ++k) code |= static_cast<std::uint32_t>(signs[k] == -1) << k;
+  return code;
+}
+
+inline void signs_of(std::uint32_t code, int n, signed char* signs) noexcept {
+  for (int k = 0; k < n; ++k) signs[k] = static_cast<signed char>(((code >> k) & 1) != 0 ? -1 : 1);
+}
+
+enum class Found : unsigned char { solution, nothing, limit };
+
+/// Sign iteration (generalized Newton, Mangasarian 2009): the signs of W(s)^-1 b are the next s. At most n + 4 solves;
+/// gives up on a pattern seen before.
+template <int Capacity>
+inline Found iterate_signs(Search<Capacity>& search, signed char* signs) noexcept {
+  std::uint32_t seen[hlcp_max_order + 4];
+  for (int step = 0; step < search.n + 4; ++step) {
+    if (search.solves >= search.max_solves) return Found::limit;
+    seen[step] = code_of(signs, search.n);
+    for (int k = 0; k < step; ++k)
+      if (seen[k] == seen[step]) return Found::nothing;
+    const bool accurate = try_signs(search, signs);
+    if (!search.trial.regular) return Found::nothing;
+    signed char next[hlcp_max_order];
+    std::memcpy(next, signs, sizeof next);
+    take_signs(search, next);
+    if (accurate && settle(search, signs)) return Found::solution;
+    std::memcpy(signs, next, sizeof next);
+  }
+  return Found::nothing;
+}
+
+/// Flips the least index whose sign is wrong. With the W-property index k (of 0..n-1) flips at most 2^(n-1-k) times
+/// (Rohn 2009), 2^n - 1 flips in all; more flips, or a singular matrix, mean that the property does not hold (or
+/// rounding), and it gives up.
+template <int Capacity>
+inline Found flip_least(Search<Capacity>& search, signed char* signs) noexcept {
+  const int n = search.n;
+  std::uint32_t flips[Capacity] = {};
+  while (search.solves < search.max_solves) {
+    const bool accurate = try_signs(search, signs);
+    if (!search.trial.regular) return Found::nothing;
+    double x[Capacity];
+    for (int k = 0; k < n; ++k) x[k] = search.trial.x[k];
+    if (accurate && settle(search, signs)) return Found::solution;
+    int least = 0;
+    while (least < n && !(signs[least] * x[least] < 0.0)) ++least;
+    if (least == n || ++flips[least] > (std::uint32_t{1} << (n - 1 - least))) return Found::nothing;
+    signs[least] = static_cast<signed char>(-signs[least]);
+  }
+  return Found::limit;
+}
+
+template <int Capacity>
+inline Found find(Search<Capacity>& search, signed char* signs) noexcept {
+  const Found found = iterate_signs(search, signs);
+  return found == Found::nothing ? flip_least(search, signs) : found;
+}
+
+/// Hands out the trial's x, unscaled; refuses what does not fit into normal numbers.
+template <int Capacity>
+inline void deliver(const Search<Capacity>& search, Uniqueness uniqueness, HlcpSolution<Capacity>& solution) noexcept {
+  double x[Capacity];
+  bool good = true;
+  for (int k = 0; k < search.n; ++k) {
+    const double scaled = search.trial.x[k];
+    x[k] = times_power(scaled, search.scaled.exponent);
+    const double size = std::fabs(x[k]);
+    good = good && (scaled == 0.0 || (size >= 0x1p-1022 && size < HUGE_VAL));
+    // A rounded entry is off by 2^-1075 at most: no harm below 2^100 beside terms of 2^-900.
+    good = good && !(search.scaled.lost && std::fabs(scaled) > 0x1p100);
+  }
+  if (!good) return refuse(solution, Status::inaccurate, search.solves);
+  accept(solution, search.n, x, uniqueness, search.solves, search.trial.residual);
+}
+
+inline bool in_exact_range(double value) noexcept { return value == 0.0 || std::fabs(value) >= 0x1p-180; }
+
+/// The trial of the first pattern with the signs sigma, + before - for its zeros, that solves the problem. All of them
+/// can be singular, as for |x1| + |x2| = 0: then the columns of sigma alone determine x.
+template <int Capacity>
+inline Status finish(Search<Capacity>& search, const Decided& decided) noexcept {
+  Trial<Capacity>& trial = search.trial;
+  signed char signs[hlcp_max_order];
+  bool regular = false;
+  for (std::uint32_t code = 0; code < (std::uint32_t{1} << search.n); ++code) {
+    signs_of(code, search.n, signs);
+    if (!compatible(signs, decided.sigma, search.n)) continue;
+    try_signs(search, signs);
+    regular = regular || trial.regular;
+    if (trial.regular && enforce(search, decided.sigma)) return Status::ok;
+  }
+  if (decided.frail) return regular ? Status::inaccurate : Status::singular_constraints;
+  for (int k = 0; k < search.n; ++k) trial.x[k] = decided.x[k];
+  check(search.scaled.problem, search.n, trial);
+  return trial.accurate ? Status::ok : Status::inaccurate;
+}
+
+/// The order is at most 4: the exact decision, then the trial of the signs that it found.
+template <int Capacity>
+inline void decide_small(Search<Capacity>& search, const signed char* first, const signed char* second,
+                         NotUnique policy, HlcpSolution<Capacity>& solution) noexcept {
+  const Hlcp<Capacity>& problem = search.scaled.problem;
+  const int n = search.n;
+  Small small = {{}, {}, {}, n, !search.scaled.lost};
+  for (int i = 0; i < n; ++i) {
+    small.b[i] = problem.b[i];
+    small.within_range = small.within_range && in_exact_range(small.b[i]);
+    for (int j = 0; j < n; ++j) {
+      small.plus[i][j] = problem.plus[i][j];
+      small.minus[i][j] = problem.minus[i][j];
+      small.within_range = small.within_range && in_exact_range(small.plus[i][j]) && in_exact_range(small.minus[i][j]);
+    }
+  }
+  const Decided decided = decide(small, first, second);
+  search.solves += decided.determinants;
+  const bool several = decided.decision == Decision::several;
+  if (decided.decision == Decision::none) return refuse(solution, Status::no_solution, search.solves);
+  if (decided.decision == Decision::doubtful) return refuse(solution, Status::singular_constraints, search.solves);
+  if (several && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
+  const Status status = finish(search, decided);
+  if (status != Status::ok) return refuse(solution, several ? Status::not_unique : status, search.solves);
+  deliver(search,
+          several                                   ? Uniqueness::refuted
+          : decided.decision == Decision::certified ? Uniqueness::certified
+                                                    : Uniqueness::single,
+          solution);
+}
+
+/// What enumeration of all sign patterns has seen.
+template <int Capacity>
+struct Census {
+  double x[Capacity];
+  signed char sign[hlcp_max_order];
+  int solutions;  ///< 0, 1, or 2 for several
+  bool doubtful;  ///< some pattern is neither a solution nor excluded beyond rounding errors
+};
+
+/// Whether some sign of x is wrong beyond all rounding errors. |x - W^-1 b| <= |W^-1| r for the residual r allowed, and
+/// |W^-1| r is at most twice its bound from L and U, in the largest component, if their errors cannot make W singular.
+template <int Capacity>
+inline bool excludes(const Search<Capacity>& search, const signed char* signs) noexcept {
+  const Trial<Capacity>& trial = search.trial;
+  const Hlcp<Capacity>& problem = search.scaled.problem;
+  const int n = search.n;
+  double r[Capacity];
+  double z[Capacity];
+  if (!(lu_error(trial, n) * reach_of(trial, n, trial.size, z) <= 0.5)) return false;
+  for (int i = 0; i < n; ++i) {
+    r[i] = std::fabs(problem.b[i]);
+    for (int j = 0; j < n; ++j) r[i] += std::fabs(trial.w[i][j] * trial.x[j]);
+    r[i] *= 2.0 * residual_limit(n);
+  }
+  const double error = 2.0 * reach_of(trial, n, r, z);
+  for (int k = 0; k < n; ++k)
+    if (signs[k] * trial.x[k] < -error) return true;
+  return false;
+}
+
+/// Enters the pattern just tried.
+template <int Capacity>
+inline void enter(Search<Capacity>& search, const signed char* signs, bool accurate,
+                  Census<Capacity>& census) noexcept {
+  const Trial<Capacity>& trial = search.trial;
+  const bool excluded = accurate && excludes(search, signs);
+  if (!accurate || !settle(search, signs)) {
+    census.doubtful = census.doubtful || !excluded;
+    return;
+  }
+  double largest = 0.0;
+  double distance = 0.0;
+  for (int k = 0; k < search.n; ++k) {
+    largest = std::fmax(largest, std::fabs(trial.x[k]));
+    distance = std::fmax(distance, std::fabs(trial.x[k] - census.x[k]));
+  }
+  if (census.solutions == 0) {
+    std::memcpy(census.x, trial.x, sizeof census.x);
+    std::memcpy(census.sign, signs, sizeof census.sign);
+    census.solutions = 1;
+  } else if (distance > tie_window * largest) {
+    census.solutions = 2;
+  }
+}
+
+/// All 2^n sign patterns, as far as max_solves goes: for problems that the iterations could not solve, n > 4.
+template <int Capacity>
+inline void enumerate(Search<Capacity>& search, NotUnique policy, HlcpSolution<Capacity>& solution) noexcept {
+  Census<Capacity> census = {};
+  signed char signs[hlcp_max_order] = {};
+  const std::uint64_t end = std::uint64_t{1} << search.n;
+  bool complete = true;
+  for (std::uint64_t code = 0; code < end && census.solutions < 2; ++code) {
+    if (search.solves >= search.max_solves) {
+      complete = false;
+      break;
+    }
+    signs_of(static_cast<std::uint32_t>(code), search.n, signs);
+    const bool accurate = try_signs(search, signs);
+    enter(search, signs, accurate, census);
+  }
+  if (census.solutions == 0)
+    return refuse(solution,
+                  !complete         ? Status::solve_limit
+                  : census.doubtful ? Status::singular_constraints
+                                    : Status::no_solution,
+                  search.solves);
+  if (census.solutions == 2 && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
+  if (!try_signs(search, census.sign) || !settle(search, census.sign))
+    return refuse(solution, Status::inaccurate, search.solves);
+  deliver(search,
+          census.solutions == 2          ? Uniqueness::refuted
+          : complete && !census.doubtful ? Uniqueness::single
+                                         : Uniqueness::unproven,
+          solution);
+}
+
+/// The order is above 4: iterations from the signs given; near a tie again from signs that do not depend on them;
+/// enumeration if they fail.
+template <int Capacity>
+inline void search_large(Search<Capacity>& search, signed char* signs, NotUnique policy,
+                         HlcpSolution<Capacity>& solution) noexcept {
+  const Hlcp<Capacity>& problem = search.scaled.problem;
+  for (int i = 0; i < search.n; ++i) {
+    bool zero = true;
+    for (int j = 0; j < search.n; ++j) zero = zero && problem.plus[i][j] == 0.0 && problem.minus[i][j] == 0.0;
+    if (zero)
+      return refuse(solution, problem.b[i] != 0.0 ? Status::no_solution : Status::singular_constraints, search.solves);
+  }
+  const Found found = find(search, signs);
+  if (found == Found::limit) return refuse(solution, Status::solve_limit, search.solves);
+  if (found == Found::nothing) return enumerate(search, policy, solution);
+  bool proven = contracts(problem, search.n, search.trial);
+  if (!clear(search.trial.x, search.n, signs)) {
+    double largest = 0.0;
+    for (int k = 0; k < search.n; ++k) largest = std::fmax(largest, std::fabs(search.trial.x[k]));
+    signed char start[hlcp_max_order];
+    for (int k = 0; k < search.n; ++k) {
+      const bool tie = std::fabs(search.trial.x[k]) <= tie_window * largest;
+      start[k] = proven || tie ? static_cast<signed char>(1) : signs[k];
+    }
+    const Found again = find(search, start);
+    if (again == Found::limit) return refuse(solution, Status::solve_limit, search.solves);
+    if (again == Found::nothing && find(search, signs) != Found::solution)
+      return refuse(solution, Status::inaccurate, search.solves);
+    proven = proven || contracts(problem, search.n, search.trial);
+  }
+  deliver(search, proven ? Uniqueness::certified : Uniqueness::unproven, solution);
+}
+
+/// Everything that one solve with the signs given does not settle.
+template <int Capacity>
+[[gnu::noinline, gnu::cold]] void solve_with_care(const Hlcp<Capacity>& given, int n, HlcpSolution<Capacity>& solution,
+                                                  HlcpOptions options, int solves) noexcept {
+  Search<Capacity> search;
+  search.n = n;
+  search.solves = solves;
+  search.max_solves = options.max_solves;
+  scale(given, n, search.scaled);
+  if (search.scaled.status != Status::ok) return refuse(solution, search.scaled.status, solves);
+  signed char first[hlcp_max_order];
+  signed char signs[hlcp_max_order];
+  const std::uint32_t code = code_of(solution.sign, n);
+  signs_of(code, n, first);
+  signs_of(code, n, signs);
+  if constexpr (Capacity > decidable)
+    if (n > decidable) return search_large(search, signs, options.not_unique, solution);
+  if constexpr (Capacity > 2) {
+    const bool found = n > 2 && iterate_signs(search, signs) == Found::solution;
+    if (found && clear(search.trial.x, n, signs) && contracts(search.scaled.problem, n, search.trial))
+      return deliver(search, Uniqueness::certified, solution);
+  }
+  decide_small(search, first, signs, options.not_unique, solution);
+}
+
+}  // namespace slideway::hlcp_detail

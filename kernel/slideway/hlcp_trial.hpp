@@ -1,0 +1,446 @@
+// One trial of a sign pattern s: the linear solve W(s) x = b, and everything that follows from it: signs, residual,
+// uniqueness.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <slideway/hlcp_problem.hpp>
+#include <utility>
+
+namespace slideway::hlcp_detail {
+
+using Word = std::uint64_t;
+typedef double Pair __attribute__((vector_size(16)));
+typedef long long PairBits __attribute__((vector_size(16)));
+
+inline Word bits(double value) noexcept {
+  Word word;
+  std::memcpy(&word, &value, sizeof word);
+  return word;
+}
+
+inline double real(Word word) noexcept {
+  double value;
+  std::memcpy(&value, &word, sizeof value);
+  return value;
+}
+
+inline constexpr Word sign_bit = Word{1} << 63;
+
+/// 2^k for -1022 <= k <= 1023.
+inline double power_of_two(int k) noexcept { return real(static_cast<Word>(k + 1023) << 52); }
+
+/// Rows whose size is in [2^-200, 2^200] and right sides of magnitude up to 2^200 are solved as they are, others are
+/// scaled first.
+inline unsigned sizable(double size) noexcept { return bits(size) - bits(0x1p-200) <= bits(0x1p200) - bits(0x1p-200); }
+
+/// |value| <= 2^200 or zero or tiny; false for NaN.
+inline unsigned bounded(double value) noexcept { return (bits(value) & ~sign_bit) <= bits(0x1p200); }
+
+/// A component below 2^-20 of the largest may owe its sign to rounding; then the signs are decided anew from a start
+/// that the data alone determine. Why 2^-20: the certificate shows |W^-1| R <= 2^22 for every matrix W between A+ and
+/// A-, R the row sizes, and two vectors with the residual allowed differ by at most 2 * 5 (n + 1) 2^-53 * 2 * 2^22
+/// max|x| <= 2^-20.6 max|x| for n <= 32.
+inline constexpr double tie_window = 0x1p-20;
+inline constexpr double allowance =
+    0x1p-21;  ///< of the row sizes, added to the perturbation that the certificate covers
+inline constexpr double contracting =
+    1.0 - 0x1p-20;  ///< room for the roundings in the bound itself, at most 6 n + 6 of them
+
+/// One sign pattern: W(s), its factors, and what follows from them.
+template <int Capacity>
+struct Trial {
+  static constexpr int stride = Capacity + Capacity % 2;  // rows in pairs; the odd column out is zero
+  alignas(16) double w[Capacity][stride];                 // W(s)
+  alignas(16) double lu[Capacity][stride];  // L below, U on and above the diagonal, rows in the order `row`
+  alignas(16) double side[Capacity][2];     // right side | bound: what L and U are applied to, in two lanes
+  alignas(16) double x[stride];
+  double size[Capacity];  // of row i in W(s) and in every other pattern: sum_j |w_ij| + |a+_ij - a-_ij|
+  double
+      weight[Capacity];  // 2^-exponent(size), in the order `row`: equilibrates rows in comparisons, never in the data
+  double inverse[Capacity];  // of the pivots
+  int row[Capacity];
+  double reach;     // max of the bound on |W^-1| (|A+ - A-| + allowance * size) 1
+  double residual;  // largest componentwise relative backward error
+  bool regular;     // no pivot is lost in rounding errors
+  bool accurate;    // residual within its limit
+};
+
+inline Pair load(const double* from) noexcept {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+
+inline void store(double* to, Pair pair) noexcept { std::memcpy(to, &pair, sizeof pair); }
+
+inline Pair magnitude(Pair pair) noexcept {
+  constexpr long long rest = static_cast<long long>(~sign_bit);
+  return (Pair)((PairBits)pair & PairBits{rest, rest});
+}
+
+/// (c, -|c|): one multiply-subtract then acts as L or U in the first lane and as its comparison matrix in the second.
+inline Pair comparison(double c) noexcept {
+  return (Pair)((PairBits)Pair{c, c} | PairBits{0, static_cast<long long>(sign_bit)});
+}
+
+/// The limit for the residual as computed. Gaussian elimination with one step of refinement in working precision
+/// reaches 2 (n + 1) 2^-53 (Skeel 1980; Higham 2002, theorem 12.4), the evaluation adds (n + 1) 2^-53, one more of
+/// these is slack. The true residual is then within 5 (n + 1) 2^-53.
+inline double residual_limit(int n) noexcept { return 4.0 * (n + 1) * 0x1p-53; }
+
+/// Fills w, lu, side, size and weight for W(signs). Returns false when a magnitude is out of the range where nothing
+/// overflows.
+template <int Capacity, class Count>
+inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
+  alignas(16) long long minus[Trial<Capacity>::stride];
+  for (int j = 0; j < n; ++j) minus[j] = -static_cast<long long>(signs[j] == -1);
+  unsigned good = 1;
+  for (int i = 0; i < n; ++i) {
+    Pair entries = {0.0, 0.0};
+    Pair spread = {0.0, 0.0};
+    for (int j = 0; j < n; j += 2) {
+      const bool last = j + 1 == n;
+      const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
+      const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
+      const PairBits mask = last ? PairBits{minus[j], 0} : *reinterpret_cast<const PairBits*>(&minus[j]);
+      const Pair w = (Pair)((PairBits)p ^ (((PairBits)p ^ (PairBits)m) & mask));
+      store(&trial.w[i][j], w);
+      store(&trial.lu[i][j], w);
+      entries += magnitude(w);
+      spread += magnitude(p - m);
+    }
+    const double perturbation = spread[0] + spread[1];
+    const double size = perturbation + (entries[0] + entries[1]);
+    good = good & sizable(size) & bounded(problem.b[i]);
+    trial.size[i] = size;
+    trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
+    store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
+    trial.row[i] = i;
+  }
+  return good != 0;
+}
+
+/// The row with the largest weighted entry in column k, rows k and below, and that entry: bits of magnitudes compare
+/// like numbers, the last five carry the row, so that one integer maximum finds both and ties go to the first row.
+template <int Capacity, class Count>
+inline Word pivot_in(const Trial<Capacity>& trial, int k, Count n) noexcept {
+  Word best = 0;
+  for (int i = k; i < n; ++i) {
+    const Word key = ((bits(trial.lu[i][k] * trial.weight[i]) & ~sign_bit) & ~Word{31}) | static_cast<Word>(31 - i);
+    best = key > best ? key : best;
+  }
+  return best;
+}
+
+template <int Capacity, class Count>
+inline void exchange(Trial<Capacity>& trial, int k, int p, Count n) noexcept {
+  for (int j = 0; j < n; j += 2) {
+    const Pair upper = load(&trial.lu[k][j]);
+    store(&trial.lu[k][j], load(&trial.lu[p][j]));
+    store(&trial.lu[p][j], upper);
+  }
+  const Pair side = load(trial.side[k]);
+  store(trial.side[k], load(trial.side[p]));
+  store(trial.side[p], side);
+  std::swap(trial.weight[k], trial.weight[p]);
+  std::swap(trial.row[k], trial.row[p]);
+}
+
+/// P W = L U by row updates (no sum crosses lanes: the same bits for every vector width), the forward solves of both
+/// sides with it: side <- (L^-1 P b, M(L)^-1 P bound), M() the comparison matrix, |L^-1| <= M(L)^-1 (Higham 2002,
+/// section 8.2). Returns the least weighted pivot; stops at one that is zero. n^3/3 multiplications.
+template <int Capacity, class Count>
+inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
+  Word least = bits(4.0);
+  for (int k = 0; k < n; ++k) {
+    const Word best = pivot_in(trial, k, n);
+    const int p = 31 - static_cast<int>(best & 31);
+    least = best < least ? best : least;
+    if (best < bits(0x1p-900)) break;
+    if (p != k) exchange(trial, k, p, n);
+    const double inverse = 1.0 / trial.lu[k][k];
+    trial.inverse[k] = inverse;
+    const Pair side = load(trial.side[k]);
+    for (int i = k + 1; i < n; ++i) {
+      const double l = trial.lu[i][k] * inverse;
+      for (int j = (k + 1) & ~1; j < n; j += 2)
+        store(&trial.lu[i][j], load(&trial.lu[i][j]) - Pair{l, l} * load(&trial.lu[k][j]));
+      trial.lu[i][k] = l;
+      store(trial.side[i], load(trial.side[i]) - comparison(l) * side);
+    }
+  }
+  return real(least & ~Word{31});
+}
+
+/// x = U^-1 side, and in the other lane reach = max M(U)^-1 bound.
+template <int Capacity, class Count>
+inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
+  double reach = 0.0;
+  trial.x[Trial<Capacity>::stride - 1] = 0.0;
+  for (int j = n - 1; j >= 0; --j) {
+    const double inverse = trial.inverse[j];
+    const Pair value = load(trial.side[j]) * Pair{inverse, std::fabs(inverse)};
+    store(trial.side[j], value);
+    trial.x[j] = value[0];
+    reach = value[1] > reach ? value[1] : reach;
+    for (int i = 0; i < j; ++i) store(trial.side[i], load(trial.side[i]) - comparison(trial.lu[i][j]) * value);
+  }
+  trial.reach = reach;
+}
+
+/// Whether a row whose terms are all below 2^-900 is one of zeros, so that no residual was lost to underflow.
+template <int Capacity>
+inline bool vanishes(const Hlcp<Capacity>& problem, const Trial<Capacity>& trial, int i, int n) noexcept {
+  bool zero = problem.b[i] == 0.0;
+  for (int j = 0; j < n; ++j) zero = zero && (trial.w[i][j] == 0.0 || trial.x[j] == 0.0);
+  return zero;
+}
+
+/// residual = max_i |W x - b|_i / (|W||x| + |b|)_i, and whether it is within its limit. False for anything not finite.
+template <int Capacity, class Count>
+inline void check(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial) noexcept {
+  const double limit = residual_limit(n);
+  double worst = 0.0;
+  bool good = true;
+  for (int i = 0; i < n; ++i) {
+    Pair sum = {0.0, 0.0};
+    Pair size = {0.0, 0.0};
+    for (int j = 0; j < n; j += 2) {
+      const Pair term = load(&trial.w[i][j]) * load(&trial.x[j]);
+      sum += term;
+      size += magnitude(term);
+    }
+    const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
+    const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
+    const bool lost = !(scale >= 0x1p-900);
+    if (lost && vanishes(problem, trial, i, n)) continue;
+    const double ratio = miss / scale;
+    good = good & !lost & (ratio <= limit);
+    worst = ratio > worst ? ratio : worst;
+  }
+  trial.residual = worst;
+  trial.accurate = good;
+}
+
+/// The rounding error of the product a*b (Dekker 1971). Exact for |a|, |b| < 2^996 unless the error underflows.
+inline double product_error(double a, double b) noexcept {
+  const double split = 0x1p27 + 1.0;
+  const double a_big = split * a - (split * a - a);
+  const double b_big = split * b - (split * b - b);
+  const double a_low = a - a_big;
+  const double b_low = b - b_big;
+  return ((a_big * b_big - a * b) + a_big * b_low + a_low * b_big) + a_low * b_low;
+}
+
+/// b - W x as if in twice the working precision (Ogita, Rump & Oishi 2005, Dot2).
+template <int Capacity>
+inline void residual(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial, double* rest) noexcept {
+  for (int i = 0; i < n; ++i) {
+    double sum = problem.b[i];
+    double error = 0.0;
+    for (int j = 0; j < n; ++j) {
+      const double term = -(trial.w[i][j] * trial.x[j]);
+      const double next = sum + term;
+      const double shadow = next - sum;
+      error += ((sum - (next - shadow)) + (term - shadow)) - product_error(trial.w[i][j], trial.x[j]);
+      sum = next;
+    }
+    rest[i] = sum + error;
+  }
+}
+
+/// Whether every pivot exceeds its own rounding errors, n 2^-52 (|L||U|)_kk: a test that scaling rows or columns does
+/// not change.
+template <int Capacity>
+inline bool pivots_sound(const Trial<Capacity>& trial, int n) noexcept {
+  for (int k = 0; k < n; ++k) {
+    double formed = std::fabs(trial.lu[k][k]);
+    const double pivot = formed;
+    for (int j = 0; j < k; ++j) formed += std::fabs(trial.lu[k][j] * trial.lu[j][k]);
+    if (!(pivot > n * 0x1p-52 * formed)) return false;
+  }
+  return true;
+}
+
+/// Whether max_k |x_k| is nowhere near a tie: every s_k x_k exceeds tie_window * max |x|. One comparison also tests the
+/// signs, and fails for NaN.
+template <class Count>
+inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
+  double largest = 0.0;
+  double least = HUGE_VAL;
+  for (int k = 0; k < n; ++k) {
+    const double along = real(bits(x[k]) ^ (static_cast<Word>(signs[k] == -1) << 63));
+    const double size = std::fabs(x[k]);
+    largest = size > largest ? size : largest;
+    least = along < least ? along : least;
+  }
+  return least > tie_window * largest || largest == 0.0;
+}
+
+/// What the two-by-two formula needs beside W: the row sizes |a+_i0| + |a+_i1| + |a-_i0| + |a-_i1|.
+template <int Capacity>
+inline double row_size(const Hlcp<Capacity>& problem, int i) noexcept {
+  return (std::fabs(problem.plus[i][0]) + std::fabs(problem.minus[i][0])) +
+         (std::fabs(problem.plus[i][1]) + std::fabs(problem.minus[i][1]));
+}
+
+struct Two {
+  double x0, x1;
+};
+
+inline double either(bool first, double a, double b) noexcept {
+  const Word mask = Word{0} - static_cast<Word>(first);
+  return real((bits(a) & mask) | (bits(b) & ~mask));
+}
+
+/// w x = b for n = 2 with det = det(w): x1 by Cramer's rule, x0 from the row with the larger weighted entry. As stable
+/// as elimination with that pivot (numerator and determinant are its Schur complements times the pivot), with one
+/// division less in the chain.
+inline Two solve_two(const double (&w)[2][2], double size0, double size1, double det, double b0, double b1) noexcept {
+  const double x1 = (w[0][0] * b1 - w[1][0] * b0) / det;
+  const bool first = bits(std::fabs(w[0][0]) * size1) >= bits(std::fabs(w[1][0]) * size0);
+  const double rest = either(first, b0, b1) - either(first, w[0][1], w[1][1]) * x1;
+  return {rest / either(first, w[0][0], w[1][0]), x1};
+}
+
+/// x += W^-1 rest for n = 1 and n = 2.
+template <int Capacity>
+inline void correct_small(const Hlcp<Capacity>& problem, int n, const double* rest, Trial<Capacity>& trial) noexcept {
+  if constexpr (Capacity >= 2) {
+    if (n == 2) {
+      const double w[2][2] = {{trial.w[0][0], trial.w[0][1]}, {trial.w[1][0], trial.w[1][1]}};
+      const double det = w[0][0] * w[1][1] - w[1][0] * w[0][1];
+      const Two change = solve_two(w, row_size(problem, 0), row_size(problem, 1), det, rest[0], rest[1]);
+      trial.x[0] += change.x0;
+      trial.x[1] += change.x1;
+      return;
+    }
+  }
+  trial.x[0] += rest[0] / trial.w[0][0];
+}
+
+/// x += W^-1 rest, for n >= 3 by the factors at hand.
+template <int Capacity>
+inline void correct(const Hlcp<Capacity>& problem, int n, const double* rest, Trial<Capacity>& trial) noexcept {
+  if (n <= 2) return correct_small(problem, n, rest, trial);
+  double change[Capacity];
+  for (int i = 0; i < n; ++i) change[i] = rest[trial.row[i]];
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) change[i] -= trial.lu[i][k] * change[k];
+  for (int j = n - 1; j >= 0; --j) {
+    change[j] *= trial.inverse[j];
+    for (int i = 0; i < j; ++i) change[i] -= trial.lu[i][j] * change[j];
+    trial.x[j] += change[j];
+  }
+}
+
+/// One step of iterative refinement; it depends on the data and the signs alone.
+template <int Capacity>
+inline void refine(const Hlcp<Capacity>& problem, int n, Trial<Capacity>& trial) noexcept {
+  double rest[Capacity];
+  residual(problem, n, trial, rest);
+  correct(problem, n, rest, trial);
+  check(problem, n, trial);
+}
+
+/// Solves with W(signs), n >= 3. Returns whether data in range gave a regular matrix and an accurate x.
+template <int Capacity, class Count>
+inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
+  trial.regular = trial.accurate = false;
+  if (!select(problem, n, signs, trial)) return false;
+  const double least = eliminate(trial, n);
+  // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
+  trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
+  if (!trial.regular) return false;
+  substitute(trial, n);
+  check(problem, n, trial);
+  if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
+  return trial.accurate;
+}
+
+/// The rounding errors |L U - P W| of a row are at most this times its size: 3 n 2^-53 sum_k |l_ik| sum_j |u_kj|, where
+/// weighted |l_ik| is at most 1.
+template <int Capacity>
+inline double lu_error(const Trial<Capacity>& trial, int n) noexcept {
+  double sum = 0.0;
+  for (int k = 0; k < n; ++k)
+    for (int j = k; j < n; ++j) sum += std::fabs(trial.lu[k][j]) * trial.weight[k];
+  return 3.0 * n * 0x1p-53 * sum;
+}
+
+/// z = M(U)^-1 M(L)^-1 P v, an upper bound of |W^-1| v for v >= 0; returns its largest component. n^2 multiplications.
+template <int Capacity>
+inline double reach_of(const Trial<Capacity>& trial, int n, const double* v, double* z) noexcept {
+  double largest = 0.0;
+  for (int i = 0; i < n; ++i) {
+    double sum = v[trial.row[i]];
+    for (int k = 0; k < i; ++k) sum += std::fabs(trial.lu[i][k]) * z[k];
+    z[i] = sum;
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    z[j] *= std::fabs(trial.inverse[j]);
+    for (int i = 0; i < j; ++i) z[i] += std::fabs(trial.lu[i][j]) * z[j];
+    largest = z[j] > largest ? z[j] : largest;
+  }
+  return largest;
+}
+
+/// Whether |W^-1| (|A+ - A-| + allowance) u < u for some u > 0, so that no matrix between A+ and A- is singular
+/// (spectral radius below 1: Rohn) and the W-property holds: u = 1 was tried with the solve, here follow two steps of
+/// power iteration. O(n^2) each. If a step increases every component no u can do (Collatz-Wielandt).
+template <int Capacity>
+inline bool contracts(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
+  if (n > 16 && !(lu_error(trial, n) <= 0.5 * allowance)) return false;  // to 16, growth of 2^(n-1) is allowed
+  if (trial.reach <= contracting) return true;
+  double u[Capacity];
+  double z[Capacity];
+  double v[Capacity];
+  for (int i = 0; i < n; ++i) {
+    u[i] = 1.0;
+    z[i] = trial.side[i][1];
+  }
+  double largest = trial.reach;
+  for (int step = 0; step < 2; ++step) {
+    bool hopeless = true;
+    for (int i = 0; i < n; ++i) hopeless = hopeless && z[i] >= u[i];
+    if (hopeless || !(largest < HUGE_VAL)) return false;
+    for (int i = 0; i < n; ++i) u[i] = z[i] / largest;
+    for (int i = 0; i < n; ++i) {
+      v[i] = allowance * trial.size[i];
+      for (int j = 0; j < n; ++j) v[i] += std::fabs(problem.plus[i][j] - problem.minus[i][j]) * u[j];
+    }
+    largest = reach_of(trial, n, v, z);
+    bool below = true;
+    for (int i = 0; i < n; ++i) below = below && z[i] <= contracting * u[i];
+    if (below) return true;
+  }
+  return false;
+}
+
+/// Solves with W(signs), n = 1 and n = 2, by the formulas that solve_one and solve_pair use, so that the bits agree.
+template <int Capacity>
+inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed char* signs,
+                          Trial<Capacity>& trial) noexcept {
+  trial.regular = trial.accurate = false;
+  if (!select(problem, n, signs, trial)) return false;
+  const auto& w = trial.w;
+  double det = w[0][0];
+  double formed = 0.0;
+  if constexpr (Capacity >= 2) {
+    if (n == 2) {
+      det = w[0][0] * w[1][1] - w[1][0] * w[0][1];
+      formed = std::fabs(w[0][0] * w[1][1]) + std::fabs(w[1][0] * w[0][1]);
+    }
+  }
+  trial.regular = std::fabs(det) > 2.0 * 0x1p-52 * formed && std::fabs(det) >= 0x1p-900;
+  if (!trial.regular) return false;
+  for (double& component : trial.x) component = 0.0;
+  correct_small(problem, n, problem.b, trial);
+  check(problem, n, trial);
+  if (!trial.accurate) refine(problem, n, trial);
+  return trial.accurate;
+}
+
+}  // namespace slideway::hlcp_detail
