@@ -234,9 +234,15 @@ SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& 
       scene.guides, [&](int g) SLIDEWAY_FOLD { residual += check_guide(source, fr, w.scale, scale, g, r, balance); });
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
     const Pin& pin = scene.pin[p];
-    push(balance, pin.a, fr.pin_a[p].rho, r.pin[p], 0, false);
-    push(balance, pin.b, fr.pin_b[p].rho, {-r.pin[p].x, -r.pin[p].y}, 0, false);
-    r.power.constraint_work += dot(r.pin[p], fr.pin_a[p].velocity - fr.pin_b[p].velocity);
+    const Meeting& at = fr.meeting[p];
+    push(balance, pin.a, at.on_a, r.pin[p], 0, false);
+    push(balance, pin.b, at.on_b, {-r.pin[p].x, -r.pin[p].y}, 0, false);
+    const Vec2 left = free_acceleration(source, balance, pin.a, at.on_a) -
+                      free_acceleration(source, balance, pin.b, at.on_b) -
+                      Vec2{fr.ideal_target[2 * p], fr.ideal_target[2 * p + 1]};
+    residual += std::fabs(left.x) / (std::fabs(fr.ideal_target[2 * p]) + fr.ideal_norm[2 * p] * scale + tiny);
+    residual += std::fabs(left.y) / (std::fabs(fr.ideal_target[2 * p + 1]) + fr.ideal_norm[2 * p + 1] * scale + tiny);
+    r.power.constraint_work += dot(r.pin[p], at.rate);
   });
 
   for_each_down<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD {
@@ -259,13 +265,14 @@ SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& 
   return residual;
 }
 
-/// Largest sum of the self-check: one equation's residual is at most eight roundings for each term that enters it (a
-/// product, its sum, and their way through G and back), and there are at most `items` of both. Dimensionless.
+/// Largest sum of the self-check. Each of at most `items` equations takes one rounding (a product or a sum, half an eps
+/// each) for each of at most `items` terms on the way to u, as many through G and back, as many in the rows, and as
+/// many in the check itself: four halves of an eps, items squared times. Dimensionless.
 template <class Source>
 constexpr double residual_bound(const Source& source) noexcept {
   const auto& table = source.tables;
   const double items = table.coordinates + table.contacts + table.ideal + source.scene.bodies;
-  return 8 * detail::epsilon * items * items;
+  return 2 * detail::epsilon * items * items;
 }
 
 /// The weaker of two statements about uniqueness.

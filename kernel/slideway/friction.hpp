@@ -32,7 +32,8 @@ struct Friction {
   double u0[n_free];
   double Q[n_ideal][n_free], R[n_ideal][n_ideal], e[n_ideal];
   double ideal_norm[n_ideal];  ///< |P~_i|
-  Point pin_a[at_least_one(Size::pins)], pin_b[at_least_one(Size::pins)];
+  Meeting meeting[at_least_one(Size::pins)];
+  double ideal_target[n_ideal];  ///< c_P
   Hlcp<n_contacts> hlcp;
 };
 
@@ -127,16 +128,16 @@ SLIDEWAY_INLINE bool eliminate_ideal(const Source& source, const Kinematics<Size
   constexpr int capacity = Friction<Size>::ideal;
   bool independent = true;
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
-    const Pin& pin = scene.pin[p];
-    const Point a = fr.pin_a[p] = point_at(source, k, pin.a, pin.a_at, {true, true});
-    const Point b = fr.pin_b[p] = point_at(source, k, pin.b, pin.b_at, {true, true});
-    const Vec2 Phi = a.place - b.place, rate = a.velocity - b.velocity, gamma = a.known - b.known;
-    metric_row(source, k, d, table.pin[p], a.place, {1, 0}, fr.Q[2 * p]);
-    metric_row(source, k, d, table.pin[p], a.place, {0, 1}, fr.Q[2 * p + 1]);
-    fr.e[2 * p] = -gamma.x - gains.alpha * rate.x - gains.beta * Phi.x;
-    fr.e[2 * p + 1] = -gamma.y - gains.alpha * rate.y - gains.beta * Phi.y;
-    r.drift_position = larger(r.drift_position, larger(std::fabs(Phi.x), std::fabs(Phi.y)));
-    r.drift_velocity = larger(r.drift_velocity, larger(std::fabs(rate.x), std::fabs(rate.y)));
+    Meeting& at = fr.meeting[p];
+    meeting(source, k, p, at);
+    metric_row(source, k, d, table.pin[p], at.place, {1, 0}, fr.Q[2 * p]);
+    metric_row(source, k, d, table.pin[p], at.place, {0, 1}, fr.Q[2 * p + 1]);
+    const Vec2 target = {-at.gamma.x - gains.alpha * at.rate.x - gains.beta * at.Phi.x,
+                         -at.gamma.y - gains.alpha * at.rate.y - gains.beta * at.Phi.y};
+    fr.e[2 * p] = fr.ideal_target[2 * p] = target.x;
+    fr.e[2 * p + 1] = fr.ideal_target[2 * p + 1] = target.y;
+    r.drift_position = larger(r.drift_position, larger(std::fabs(at.Phi.x), std::fabs(at.Phi.y)));
+    r.drift_velocity = larger(r.drift_velocity, larger(std::fabs(at.rate.x), std::fabs(at.rate.y)));
   });
   for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD {
     const int g = table.guide_of[c];

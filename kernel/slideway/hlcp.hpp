@@ -95,7 +95,7 @@ template <int Capacity, class Count>
                                   HlcpOptions options) noexcept {
   Trial<Capacity> trial;
   if (attempt(problem, n, solution.sign, trial) && clear(trial.x, n, solution.sign)) {
-    const bool proven = (n <= 16 && trial.reach <= contracting) || contracts(problem, static_cast<int>(n), trial);
+    const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, static_cast<int>(n), trial);
     if (proven || n > decidable)
       return accept(solution, n, trial.x, proven ? Uniqueness::certified : Uniqueness::unproven, 1, trial.residual);
   }

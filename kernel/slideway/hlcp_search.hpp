@@ -418,7 +418,7 @@ template <int Capacity>
     if (n > decidable) return search_large(search, signs, options.not_unique, solution);
   if constexpr (Capacity > 2) {
     const bool found = n > 2 && iterate_signs(search, signs) == Found::solution;
-    if (found && clear(search.trial.x, n, signs) && contracts(search.scaled.problem, n, search.trial))
+    if (found && clear(search.trial.x, n, signs) && proves(search.scaled.problem, n, search.trial))
       return deliver(search, Uniqueness::certified, solution);
   }
   decide_small(search, first, signs, options.not_unique, solution);

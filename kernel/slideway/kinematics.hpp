@@ -226,6 +226,30 @@ SLIDEWAY_INLINE void sliding(const Source& source, const Kinematics<Size>& k, in
   if (rail_known) s.gamma[1] -= k.known_alpha[rail] * s.along;
 }
 
+/// The two points of a pin, seen from body b: Phi = r_a - r_b, and with w the velocity of a's point against b's
+/// material point at the same place, Phi'' = w' = (accelerations' difference) - 2 omega_b perp w, as for a guide. So
+/// the pin's forces on a and b act at one place and cancel, drift or not.
+struct Meeting {
+  Vec2 on_a, on_b;  ///< from the bodies' origins to a's point, m
+  Vec2 place;
+  Vec2 Phi, rate, gamma;
+};
+
+/// The points of pin p. Constant time.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void meeting(const Source& source, const Kinematics<Size>& k, int p, Meeting& m) noexcept {
+  const Pin& pin = source.scene.pin[p];
+  const Point a = point_at(source, k, pin.a, pin.a_at, {true, true});
+  m.on_a = a.rho;
+  m.place = a.place;
+  m.on_b = pin.b == ground ? a.place : a.place - k.origin[pin.b];
+  m.Phi = m.on_b - (pin.b == ground ? pin.b_at : k.turn[pin.b] * pin.b_at);
+  const Point b = point(source, k, pin.b, m.on_b, true);
+  m.rate = a.velocity - b.velocity;
+  m.gamma = a.known - b.known;
+  if (pin.b != ground && source.tables.turning[pin.b]) m.gamma = m.gamma - (2 * k.rate[pin.b]) * perp(m.rate);
+}
+
 /// Column of a coordinate in the relative Jacobian of two bodies' material points at one place: side times the
 /// velocity that a unit speed of the coordinate gives. d: from the origin of the coordinate's body to the place.
 SLIDEWAY_INLINE constexpr Vec2 column(Motion motion, Rotation frame, Vec2 d, int side) noexcept {

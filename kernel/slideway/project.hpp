@@ -30,12 +30,11 @@ double constraint_rows(const Source& source, const Kinematics<Size>& k, const Dy
     reach = larger(reach, larger(std::fabs(place.x), std::fabs(place.y)));
   };
   for_each<Source, Size::pins>(scene.pins, [&](int p) {
-    const Pin& pin = scene.pin[p];
-    const Point a = point_at(source, k, pin.a, pin.a_at, {true, true});
-    const Point b = point_at(source, k, pin.b, pin.b_at, {true, true});
-    const Vec2 error = of_rates ? a.velocity - b.velocity : a.place - b.place;
-    set(2 * p, table.pin[p], a.place, {1, 0}, error.x);
-    set(2 * p + 1, table.pin[p], a.place, {0, 1}, error.y);
+    Meeting at;
+    meeting(source, k, p, at);
+    const Vec2 error = of_rates ? at.rate : at.Phi;
+    set(2 * p, table.pin[p], at.place, {1, 0}, error.x);
+    set(2 * p + 1, table.pin[p], at.place, {0, 1}, error.y);
   });
   for_each<Source, Size::guides>(scene.guides, [&](int g) {
     Sliding& s = fr.sliding[g];
