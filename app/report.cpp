@@ -1,0 +1,300 @@
+#include "report.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <slideway/embedded/page.hpp>
+#include <string_view>
+
+namespace slideway::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// x to nine significant digits, a thousand times finer than any screen shows; the CSV has all of them. JSON has no
+/// infinities: null.
+Json number(double x) {
+  if (!std::isfinite(x)) return nullptr;
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", x);
+  return std::strtod(digits, nullptr);
+}
+
+Json point(Vec2 r) { return {number(r.x), number(r.y)}; }
+
+template <class Value>
+Json column(const std::vector<Sample>& samples, Value value) {
+  Json result = Json::array();
+  for (const Sample& sample : samples) result.push_back(number(value(sample)));
+  return result;
+}
+
+/// Sample by sample -> column by column.
+template <class Value>
+Json columns(const std::vector<Sample>& samples, int count, Value value) {
+  Json result = Json::array();
+  for (int j = 0; j < count; ++j) result.push_back(column(samples, [&](const Sample& s) { return value(s, j); }));
+  return result;
+}
+
+const char* name(Joint joint) {
+  switch (joint) {
+    case Joint::revolute:
+      return "revolute";
+    case Joint::prismatic:
+      return "prismatic";
+    case Joint::planar:
+      return "planar";
+    case Joint::fixed:
+      return "fixed";
+  }
+  return "unknown";
+}
+
+Json bodies(const io::SceneFile& file) {
+  Json result = Json::array();
+  for (int i = 0; i < file.scene.bodies; ++i) {
+    const Body& body = file.scene.body[i];
+    Json start = Json::array();
+    for (int j = 0; j < coordinates(body.joint); ++j) start.push_back(number(body.q[j]));
+    result.push_back({{"name", file.body_names.at(i)},
+                      {"parent", body.parent},
+                      {"joint", name(body.joint)},
+                      {"at", point(body.at)},
+                      {"angle", number(body.angle)},
+                      {"mass", number(body.mass)},
+                      {"com", point(body.com)},
+                      {"start", start}});
+  }
+  return result;
+}
+
+Json guides(const io::SceneFile& file) {
+  Json result = Json::array();
+  for (int g = 0; g < file.scene.guides; ++g) {
+    const Guide& guide = file.scene.guide[g];
+    Json contacts = Json::array();
+    for (int k = 0; k < guide.contacts; ++k) contacts.push_back(point(guide.contact[k]));
+    result.push_back({{"name", file.guide_names.at(g)},
+                      {"slider", guide.slider},
+                      {"rail", guide.rail},
+                      {"origin", point(guide.origin)},
+                      {"tangent", point(guide.tangent)},
+                      {"contacts", contacts}});
+  }
+  return result;
+}
+
+Json drives(const io::SceneFile& file) {
+  Json result = Json::array();
+  for (int d = 0; d < file.scene.drives; ++d) {
+    const Drive& drive = file.scene.drive[d];
+    const Joint joint = file.scene.body[drive.body].joint;
+    const bool turns = joint == Joint::revolute || (joint == Joint::planar && drive.axis == 2);
+    result.push_back(
+        {{"name", file.drive_names.at(d)}, {"body", drive.body}, {"axis", drive.axis}, {"unit", turns ? "N m" : "N"}});
+  }
+  return result;
+}
+
+/// Pins and springs: two points, each on a body.
+template <class Link>
+Json links(const Link* link, int count, const std::vector<std::string>& names) {
+  Json result = Json::array();
+  for (int i = 0; i < count; ++i) {
+    result.push_back({{"name", names.at(i)},
+                      {"a", link[i].a},
+                      {"a_at", point(link[i].a_at)},
+                      {"b", link[i].b},
+                      {"b_at", point(link[i].b_at)}});
+  }
+  return result;
+}
+
+Json loads(const Recording& recording) {
+  const io::SceneFile& file = recording.file;
+  Json result = Json::array();
+  for (int l = 0; l < file.scene.loads; ++l) {
+    const Load& load = file.scene.load[l];
+    const double scale = load.input == none ? 1 : recording.input_values.at(load.input);
+    result.push_back({{"name", file.load_names.at(l)},
+                      {"body", load.body},
+                      {"at", point(load.at)},
+                      {"force", point({scale * load.force.x, scale * load.force.y})},
+                      {"torque", number(scale * load.torque)}});
+  }
+  return result;
+}
+
+Json inputs(const Recording& recording) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < recording.file.input_names.size(); ++i) {
+    result.push_back({recording.file.input_names[i], number(recording.input_values.at(i))});
+  }
+  return result;
+}
+
+Json scene(const Recording& recording) {
+  const io::SceneFile& file = recording.file;
+  Json joint_springs = Json::array();
+  for (int s = 0; s < file.scene.joint_springs; ++s) joint_springs.push_back({{"body", file.scene.joint_spring[s].body}});
+  return {{"name", file.name},
+          {"hash", file.hash},
+          {"settings", file.settings},
+          {"gravity", point(file.scene.gravity)},
+          {"alpha", number(file.scene.alpha)},
+          {"beta", number(file.scene.beta)},
+          {"bodies", bodies(file)},
+          {"guides", guides(file)},
+          {"drives", drives(file)},
+          {"pins", links(file.scene.pin, file.scene.pins, file.pin_names)},
+          {"springs", links(file.scene.spring, file.scene.springs, file.spring_names)},
+          {"joint_springs", joint_springs},
+          {"loads", loads(recording)}};
+}
+
+Json run(const Recording& recording) {
+  return {{"method", recording.method},
+          {"dt", number(recording.dt)},
+          {"duration", number(recording.duration)},
+          {"steps", recording.steps},
+          {"t", number(recording.t)},
+          {"status", slideway::name(recording.status)},
+          {"message", recording.status == Status::ok || recording.message.empty() ? sentence(recording.status)
+                                                                                  : recording.message},
+          {"uniqueness", slideway::name(recording.uniqueness)},
+          {"drift_position", number(recording.drift_position)},
+          {"drift_velocity", number(recording.drift_velocity)},
+          {"residual", number(recording.residual)},
+          {"solves_max", recording.solves_max},
+          {"unlocated_events", recording.unlocated_events},
+          {"ns_per_step", number(recording.ns_per_step)}};
+}
+
+Json peaks(const std::vector<Peak>& peaks) {
+  Json result = Json::array();
+  for (const Peak& peak : peaks) result.push_back({number(peak.value), number(peak.t)});
+  return result;
+}
+
+/// The miss is a difference of nearly equal numbers: taken here, before they are shortened.
+double energy_miss(const Sample& sample, double initial) {
+  return sample.energy - initial - (sample.work - sample.dissipated + sample.constraint_work);
+}
+
+Json energy(const Recording& recording) {
+  return {{"initial", number(recording.energy_initial)},
+          {"final", number(recording.energy_final)},
+          {"work", number(recording.energy.work)},
+          {"dissipated", number(recording.energy.dissipated)},
+          {"constraint_work", number(recording.energy.constraint_work)},
+          {"miss", number(recording.energy_miss())},
+          {"in_play", number(recording.energy_in_play)}};
+}
+
+Json samples(const Recording& recording) {
+  const std::vector<Sample>& all = recording.samples;
+  const auto& scene = recording.file.scene;
+  const double initial = recording.energy_initial;
+  return {{"t", column(all, [](const Sample& s) { return s.t; })},
+          {"q", columns(all, coordinates(scene), [](const Sample& s, int j) { return s.q[j]; })},
+          {"slip", columns(all, scene.guides, [](const Sample& s, int g) { return s.slip[g]; })},
+          {"lambda", columns(all, contacts(scene), [](const Sample& s, int c) { return s.lambda[c]; })},
+          {"friction", columns(all, scene.guides, [](const Sample& s, int g) { return s.friction[g]; })},
+          {"drive", columns(all, scene.drives, [](const Sample& s, int d) { return s.drive[d]; })},
+          {"pin", columns(all, scene.pins, [](const Sample& s, int p) { return std::hypot(s.pin[p].x, s.pin[p].y); })},
+          {"energy", column(all, [=](const Sample& s) { return s.energy - initial; })},
+          {"work", column(all, [](const Sample& s) { return s.work; })},
+          {"dissipated", column(all, [](const Sample& s) { return s.dissipated; })},
+          {"constraint_work", column(all, [](const Sample& s) { return s.constraint_work; })},
+          {"miss", column(all, [=](const Sample& s) { return energy_miss(s, initial); })},
+          {"drift", column(all, [](const Sample& s) { return s.drift; })}};
+}
+
+Json events(const Recording& recording) {
+  Json result = Json::array();
+  for (const Event& event : recording.events) result.push_back({number(event.t), event.guide, name(event.kind)});
+  return result;
+}
+
+/// The data as JSON. "<" is written as an escape, so that no text in it can end the script element that holds it.
+std::string data(const Recording& recording) {
+  const Json document = {
+      {"version", SLIDEWAY_VERSION},
+      {"scene", scene(recording)},
+      {"inputs", inputs(recording)},
+      {"run", run(recording)},
+      {"peaks",
+       {{"lambda", peaks(recording.lambda_peak)},
+        {"friction", peaks(recording.friction_peak)},
+        {"drive", peaks(recording.drive_peak)},
+        {"pin", peaks(recording.pin_peak)}}},
+      {"energy", energy(recording)},
+      {"events", events(recording)},
+      {"samples", samples(recording)},
+  };
+  std::string text;
+  for (char c : document.dump(-1, ' ', true, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (char c : text) {
+    switch (c) {
+      case '<':
+        result += "&lt;";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string_view embedded_file(std::string_view name) {
+  for (const auto& [file, text] : embedded::page) {
+    if (file != name) continue;
+    // A last line that names a source map would be the page's only request.
+    const auto map = text.rfind("# sourceMappingURL=");
+    return map == text.npos ? text : text.substr(0, text.rfind('\n', map));
+  }
+  return {};
+}
+
+}  // namespace
+
+void write_report(const Recording& recording, std::ostream& out) {
+  // report.html with {{FILE}} replaced by that file, {{title}} by the scene's name and {{data}} by the data.
+  std::string_view rest = embedded_file("report.html");
+  for (auto open = rest.find("{{"); open != rest.npos; open = rest.find("{{")) {
+    const auto close = rest.find("}}", open);
+    const std::string_view key = rest.substr(open + 2, close - open - 2);
+    out << rest.substr(0, open);
+    if (key == "title") {
+      out << escaped(recording.file.name);
+    } else if (key == "data") {
+      out << data(recording);
+    } else {
+      out << embedded_file(key);
+    }
+    rest.remove_prefix(close + 2);
+  }
+  out << rest;
+}
+
+}  // namespace slideway::app
