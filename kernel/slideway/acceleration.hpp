@@ -19,10 +19,9 @@ struct Work {
   Kinematics<Size> kinematics;
   Dynamics<Size> dynamics;
   Friction<Size> friction;
-  HlcpSolution<Friction<Size>::n_contacts> contact_forces;
   double prescribed[at_least_one(Size::coordinates)];
-  double u[at_least_one(Size::coordinates)];      ///< G q''
-  double scale[at_least_one(Size::coordinates)];  ///< sum of |terms| of u: the rounding scale of its entries
+  double u[at_least_one(Size::coordinates)];  ///< G q''
+  double scale;  ///< sum of the lengths of all terms of u: the rounding scale of its entries
   double pi[Friction<Size>::n_ideal];
 };
 
@@ -50,9 +49,10 @@ template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work<Size>& w) noexcept {
   const auto& table = source.tables;
   const Friction<Size>& fr = w.friction;
+  w.scale = 0;
   for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
     w.u[f] = fr.free_motion[f];
-    w.scale[f] = std::fabs(fr.free_motion[f]);
+    w.scale += std::fabs(fr.free_motion[f]);
   });
   for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
     if (!table.is_rough[g]) return;
@@ -61,15 +61,14 @@ SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work
     const bool two = source.scene.guide[g].contacts == 2;
     for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
       const int f = link.fill[e];
-      const double normal = fr.N[g][f] * force.normal, tangential = fr.T[g][f] * force.friction;
-      double term = normal + tangential, size = std::fabs(fr.N[g][f]) * force.Lambda + std::fabs(tangential);
-      if (two) {
-        const double couple = fr.E[g][f] * force.couple;
-        term += couple;
-        size += std::fabs(couple);
-      }
-      w.u[f] += term;
-      w.scale[f] += size;
+      const double tangential = fr.T[g][f] * force.friction;
+      w.u[f] += fr.N[g][f] * force.normal + tangential;
+      if (two) w.u[f] += fr.E[g][f] * force.couple;
+      w.scale += std::fabs(tangential);
+    });
+    for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
+      const int c = table.first_contact[g] + i;
+      w.scale += fr.norm[table.row_of[c]] * std::fabs(r.lambda[c]);
     });
   });
   if (table.ideal == 0) return;
@@ -77,23 +76,20 @@ SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work
   for_each<Source, capacity>(table.ideal,
                              [&](int i) SLIDEWAY_FOLD { w.pi[i] = fr.e[i] - inner(source, fr.Q[i], w.u); });
   for_each<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD { add_scaled(source, w.pi[i], fr.Q[i], w.u); });
-  double size = 0;
   for_each_down<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD {
     w.pi[i] /= fr.R[i][i];
     for_each<Source, capacity>(i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
-    size += fr.ideal_norm[i] * std::fabs(w.pi[i]);
+    w.scale += fr.ideal_norm[i] * std::fabs(w.pi[i]);
   });
-  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { w.scale[f] += size; });
 }
 
 /// Friction of all guides into the reaction; false when it does not oppose the slip.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE bool rub(const Source& source, const signed char* mode, const Friction<Size>& fr,
-                         Reaction<Size>& r) noexcept {
+SLIDEWAY_INLINE bool rub(const Source& source, const Friction<Size>& fr, Reaction<Size>& r) noexcept {
   bool opposes = true;
   for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
     r.friction[g] = guide_force(source, fr, r, g).friction;
-    opposes = opposes && r.friction[g] * r.slip[g] <= 0 && r.friction[g] * mode[g] <= 0;
+    opposes = opposes && r.friction[g] * r.slip[g] <= 0;
   });
   return opposes;
 }
@@ -171,8 +167,8 @@ inline constexpr double tiny = 0x1p-1022;
 /// Guide g in the self-check: its forces onto the slider and the rail, its power, and the residual of its rows over
 /// their rounding scale.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& fr, const double* scale,
-                                   double whole_scale, int g, Reaction<Size>& r, Balance<Size>& balance) noexcept {
+SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& fr, double scale, int g,
+                                   Reaction<Size>& r, Balance<Size>& balance) noexcept {
   const auto& table = source.tables;
   const Guide& guide = source.scene.guide[g];
   const Sliding& s = fr.sliding[g];
@@ -186,25 +182,15 @@ SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& f
   Vec2 relative = free_acceleration(source, balance, slider, s.on_slider);
   if (rail != ground) relative = relative - free_acceleration(source, balance, rail, s.on_rail);
   const double accelerated = dot(s.n, relative);
-  double row_scale = 0, turning_scale = 0;
-  if (rough) {
-    for_each<Source, Size::coordinates>(table.guide[g].fills, [&](int e) SLIDEWAY_FOLD {
-      const int f = table.guide[g].fill[e];
-      row_scale += std::fabs(fr.N[g][f]) * scale[f];
-      if (two) turning_scale += std::fabs(fr.E[g][f]) * scale[f];
-    });
-  } else {
-    row_scale = fr.ideal_norm[table.row_of[c]] * whole_scale;
-    if (two) turning_scale = fr.ideal_norm[table.row_of[c] + 1] * whole_scale;
-  }
-  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + row_scale + tiny);
+  const int m = table.row_of[c];
+  const double* norm = rough ? fr.norm : fr.ideal_norm;
+  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + norm[m] * scale + tiny);
   r.power.dissipated -= of_guide.friction * s.slip[0];
   r.power.constraint_work += r.lambda[c] * s.Phi_rate[0];
   if (two) {
     const double turning = rail == ground ? balance.alpha[slider] : balance.alpha[slider] - balance.alpha[rail];
-    const double row_scale_1 = row_scale + (rough ? std::fabs(s.along) : 1) * turning_scale;
     residual += std::fabs(accelerated + s.along * turning - fr.target[c + 1]) /
-                (std::fabs(fr.target[c + 1]) + row_scale_1 + tiny);
+                (std::fabs(fr.target[c + 1]) + norm[m + 1] * scale + tiny);
     const double friction_1 = rough ? fr.sigma[g] * std::fabs(r.lambda[c + 1]) : 0;
     r.power.dissipated -= friction_1 * (s.slip[1] - s.slip[0]);
     r.power.constraint_work += r.lambda[c + 1] * s.Phi_rate[1];
@@ -214,10 +200,10 @@ SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& f
 
 /// The self-check: sum over all equations of |residual| / (rounding scale). Fills in the drives' forces and the power.
 ///
-/// Rounding scales, from u = G q'' (friction.hpp): entry f of u carries a few eps of scale_f = sum |terms|, and G maps
-/// an error du to one of at most sqrt(M_jj) |du| in row j of the equations of motion (Cauchy and Schwarz with M = G'G),
-/// and N~ to one of sum |N~_f| |du_f| in a contact's row. So rows j are measured in sqrt(M_jj) sum_f scale_f, rows of
-/// contacts in |c| + sum_f |N~_f| scale_f. A sum, not a maximum: it passes NaN on.
+/// Rounding scales, from u = G q'' (friction.hpp): u is a sum of terms with `scale` the sum of their lengths, so it
+/// carries a few eps of that; G maps an error du to one of at most sqrt(M_jj) |du| in row j of the equations of motion
+/// (Cauchy and Schwarz with M = G'G), and a row N~ to one of at most |N~| |du|. So rows j are measured in
+/// sqrt(M_jj) scale, rows of contacts and pins in |c| + |N~| scale. A sum, not a maximum: it passes NaN on.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& w, Reaction<Size>& r) noexcept {
   const auto& scene = source.scene;
@@ -226,12 +212,12 @@ SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& 
   const Friction<Size>& fr = w.friction;
   Balance<Size> balance;
   add_free_motion(source, w, r.acceleration, balance);
-  double residual = 0, scale = 0;
-  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { scale += w.scale[f]; });
+  const double scale = w.scale;
+  double residual = 0;
   r.power = {w.dynamics.applied_power, w.dynamics.damper_power, 0};
 
   for_each<Source, Size::guides>(
-      scene.guides, [&](int g) SLIDEWAY_FOLD { residual += check_guide(source, fr, w.scale, scale, g, r, balance); });
+      scene.guides, [&](int g) SLIDEWAY_FOLD { residual += check_guide(source, fr, scale, g, r, balance); });
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
     const Pin& pin = scene.pin[p];
     const Meeting& at = fr.meeting[p];
@@ -311,12 +297,15 @@ SLIDEWAY_INLINE int undecided_guide(const Source& source, const signed char* mod
 /// tau is the time since the step's start, for live inputs. r is valid only when the status is ok. `report` keeps the
 /// extremes of all calls. Cost: one HLCP and O(bodies + contacts^2).
 template <class Source, class Size = typename Source::Size>
-Status accelerate(const Source& source, double t, double tau, const double* q, const double* v,
-                  const Inputs<Size>& inputs, const Solving& solving, signed char* mode, signed char* sign,
-                  Reaction<Size>& r, Report& report) noexcept {
+Status accelerate(const Source& source, double t, double tau, const double* __restrict q, const double* __restrict v,
+                  const Inputs<Size>& inputs, const Solving& solving, signed char* __restrict mode,
+                  signed char* __restrict sign, Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
   Work<Size> w;
+  // Apart from `w`: what a call that is not inlined may see is not kept in registers.
+  Problem<Size> hlcp;
+  HlcpSolution<at_least_one(Size::contacts)> answer;
   r.t = t;
   r.drift_position = r.drift_velocity = 0;
   prescribe(source, q, v, t, inputs, tau, solving.gains, w.prescribed, r.drift_position, r.drift_velocity);
@@ -333,24 +322,24 @@ Status accelerate(const Source& source, double t, double tau, const double* q, c
   apply_forces(source, w.kinematics, inputs, tau, w.dynamics);
   gather(source, w.kinematics, w.dynamics);
   if (!factor_mass(source, w.kinematics, q, v, w.dynamics)) return Status::singular_constraints;
-  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r)) {
+  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r, hlcp)) {
     return Status::singular_constraints;
   }
 
   if (table.rough > 0) {
-    for_each<Source, Size::contacts>(
-        table.rough, [&](int m) SLIDEWAY_FOLD { w.contact_forces.sign[m] = sign[table.rough_contact[m]]; });
+    for_each<Source, Size::contacts>(table.rough,
+                                     [&](int m) SLIDEWAY_FOLD { answer.sign[m] = sign[table.rough_contact[m]]; });
     if constexpr (Source::folds) {
-      solve(w.friction.hlcp, std::integral_constant<int, Source::tables.rough>{}, w.contact_forces, solving.hlcp);
+      solve(hlcp, std::integral_constant<int, Source::tables.rough>{}, answer, solving.hlcp);
     } else {
-      solve(w.friction.hlcp, static_cast<int>(table.rough), w.contact_forces, solving.hlcp);
+      solve(hlcp, static_cast<int>(table.rough), answer, solving.hlcp);
     }
-    report.solves = report.solves > w.contact_forces.solves ? report.solves : w.contact_forces.solves;
-    if (w.contact_forces.status != Status::ok) return w.contact_forces.status;
-    report.uniqueness = weaker(report.uniqueness, w.contact_forces.uniqueness);
+    report.solves = report.solves > answer.solves ? report.solves : answer.solves;
+    if (answer.status != Status::ok) return answer.status;
+    report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
     for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
-      r.lambda[table.rough_contact[m]] = w.contact_forces.x[m];
-      sign[table.rough_contact[m]] = w.contact_forces.sign[m];
+      r.lambda[table.rough_contact[m]] = answer.x[m];
+      sign[table.rough_contact[m]] = answer.sign[m];
     });
   }
   resolve(source, r, w);
@@ -363,7 +352,7 @@ Status accelerate(const Source& source, double t, double tau, const double* q, c
     r.acceleration[j] = table.free_of[j] != none ? w.u[table.free_of[j]] : w.prescribed[j];
   });
 
-  const bool opposes = rub(source, mode, w.friction, r);
+  const bool opposes = rub(source, w.friction, r);
   const double residual = check(source, v, w, r);
   report.residual = residual > report.residual ? residual : report.residual;
   if (solving.at_start) {

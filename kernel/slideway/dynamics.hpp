@@ -156,10 +156,11 @@ SLIDEWAY_INLINE bool factor_mass(const Source& source, const Kinematics<Size>& k
     d.h[j] -= spring.stiffness * (q[j] - spring.rest) + spring.damping * v[j];
     d.damper_power += spring.damping * v[j] * v[j];
   });
+  // What is left of a pivot after n subtractions of its own size is rounding below n eps of it.
+  const double rounding = table.free * detail::epsilon;
   bool definite = true;
   for_each_down<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
-    // What is left of a pivot after n subtractions of its own size is rounding below n eps of it.
-    definite = definite && d.M[f][f] > table.free * detail::epsilon * d.diagonal[f];
+    definite &= d.M[f][f] > rounding * d.diagonal[f];
     d.M[f][f] = std::sqrt(d.M[f][f]);
     d.inverse[f] = 1 / d.M[f][f];
     for_each<Source, Size::coordinates>(table.ups[f], [&](int e) SLIDEWAY_FOLD {
@@ -174,17 +175,18 @@ SLIDEWAY_INLINE bool factor_mass(const Source& source, const Kinematics<Size>& k
   return definite;
 }
 
-/// x := G^-T x over the free coordinates in `list` (ascending; closed under going up). Cost: sum of depths.
-template <class Source, class Size = typename Source::Size>
+/// x := G^-T x over the free coordinates in `list` (ascending; closed under going up), for each row x given. Cost: sum
+/// of depths, a row.
+template <class Source, class... Row, class Size = typename Source::Size>
 SLIDEWAY_INLINE void to_metric(const Source& source, const Dynamics<Size>& d, const Index* list, int count,
-                               double* x) noexcept {
+                               Row*... row) noexcept {
   const auto& table = source.tables;
   for_each_down<Source, Size::coordinates>(count, [&](int c) SLIDEWAY_FOLD {
     const int f = list[c];
-    x[f] *= d.inverse[f];
+    ((row[f] *= d.inverse[f]), ...);
     for_each<Source, Size::coordinates>(table.ups[f], [&](int e) SLIDEWAY_FOLD {
       const int g = table.up[f][e];
-      x[g] -= d.M[f][g] * x[f];
+      ((row[g] -= d.M[f][g] * row[f]), ...);
     });
   });
 }

@@ -27,6 +27,7 @@ struct Friction {
   double E[n_guides][n_free];        ///< the slider's turning against the rail
   double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used when there are any
   double E_clear[n_guides][n_free];
+  double norm[n_contacts];     ///< |N~| of each rough contact
   double sigma[n_guides];      ///< friction per |lambda|, along the guide
   double free_motion[n_free];  ///< h~
   double u0[n_free];
@@ -34,8 +35,11 @@ struct Friction {
   double ideal_norm[n_ideal];  ///< |P~_i|
   Meeting meeting[at_least_one(Size::pins)];
   double ideal_target[n_ideal];  ///< c_P
-  Hlcp<n_contacts> hlcp;
 };
+
+/// The HLCP of a scene's rough contacts.
+template <class Size>
+using Problem = Hlcp<at_least_one(Size::contacts)>;
 
 /// The relative Jacobian row of a link along `direction` at `place`, free coordinates only: added to x.
 template <class Source, class Size = typename Source::Size>
@@ -60,19 +64,6 @@ SLIDEWAY_INLINE void metric_row(const Source& source, const Kinematics<Size>& k,
                                 const Link<Size>& link, Vec2 place, Vec2 direction, double* x) noexcept {
   clear<Source>(link, x);
   add_row(source, k, link, place, direction, x);
-  to_metric(source, d, link.fill, link.fills, x);
-}
-
-/// The row E of a link in the mass metric: the rate of a against b.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void turning_row(const Source& source, const Dynamics<Size>& d, const Link<Size>& link,
-                                 double* x) noexcept {
-  const auto& table = source.tables;
-  clear<Source>(link, x);
-  for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
-    const int j = link.column[c], f = table.free_of[j];
-    if (f != none && table.motion[j] == Motion::turn) x[f] = link.side[c];
-  });
   to_metric(source, d, link.fill, link.fills, x);
 }
 
@@ -169,13 +160,10 @@ SLIDEWAY_INLINE void clear_of_ideal(const Source& source, const Friction<Size>& 
   });
 }
 
-/// Is anything left of the row n + s e when the ideal rows are taken out?
+/// |n + s e|^2
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE bool survives(const Source& source, const double* n, const double* e, double s, double left) noexcept {
-  double whole = inner(source, n, n);
-  if (s != 0) whole += s * (2 * inner(source, n, e) + s * inner(source, e, e));
-  const double bound = rank_bound(source);
-  return left > bound * bound * whole;
+SLIDEWAY_INLINE double squared_length(const Source& source, const double* n, const double* e, double s) noexcept {
+  return inner(source, n, n) + s * (2 * inner(source, n, e) + s * inner(source, e, e));
 }
 
 /// Geometry of all contacts, the targets c, the sliding speeds and the drift. Linear in the contacts.
@@ -198,31 +186,48 @@ SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>
 /// Rows and right side of rough guide g.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, int g,
-                                Friction<Size>& fr) noexcept {
+                                Friction<Size>& fr, Problem<Size>& hlcp) noexcept {
   const auto& table = source.tables;
   const Link<Size>& link = table.guide[g];
   const Sliding& s = fr.sliding[g];
   const int c = table.first_contact[g], m = table.row_of[c];
   const bool two = source.scene.guide[g].contacts == 2;
-  metric_row(source, k, d, link, s.place, s.n, fr.N[g]);
-  metric_row(source, k, d, link, s.place, s.t, fr.T[g]);
-  if (two) turning_row(source, d, link, fr.E[g]);
-  if (table.ideal > 0) clear_of_ideal(source, fr, fr.N[g], fr.N_clear[g]);
-  if (table.ideal > 0 && two) clear_of_ideal(source, fr, fr.E[g], fr.E_clear[g]);
+  double *N = fr.N[g], *T = fr.T[g], *E = fr.E[g];
+  for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
+    const int f = link.fill[e];
+    N[f] = T[f] = 0;
+    if (two) E[f] = 0;
+  });
+  for_each<Source, Size::coordinates>(link.columns, [&](int e) SLIDEWAY_FOLD {
+    const int j = link.column[e], f = table.free_of[j], i = table.body_of[j];
+    if (f == none) return;
+    const Vec2 per_speed = column(table.motion[j], k.frame[i], s.place - k.origin[i], link.side[e]);
+    N[f] = dot(s.n, per_speed);
+    T[f] = dot(s.t, per_speed);
+    if (two && table.motion[j] == Motion::turn) E[f] = link.side[e];
+  });
+  if (two) {
+    to_metric(source, d, link.fill, link.fills, N, T, E);
+  } else {
+    to_metric(source, d, link.fill, link.fills, N, T);
+  }
+  if (table.ideal > 0) clear_of_ideal(source, fr, N, fr.N_clear[g]);
+  if (table.ideal > 0 && two) clear_of_ideal(source, fr, E, fr.E_clear[g]);
   double moved = 0, turned = 0;
   for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
     const int f = link.fill[e];
-    moved += fr.N[g][f] * fr.u0[f];
-    if (two) turned += fr.E[g][f] * fr.u0[f];
+    moved += N[f] * fr.u0[f];
+    if (two) turned += E[f] * fr.u0[f];
   });
-  fr.hlcp.b[m] = fr.target[c] - moved;
-  if (two) fr.hlcp.b[m + 1] = fr.target[c + 1] - moved - s.along * turned;
+  hlcp.b[m] = fr.target[c] - moved;
+  if (two) hlcp.b[m + 1] = fr.target[c + 1] - moved - s.along * turned;
 }
 
 /// S and S* between the contacts of rough guides g (rows) and o (columns): with s and f for along and across,
 ///   S_ij = NN + s_i EN + s_j NE + s_i s_j EE,  S*_ij = sigma_o (NT + s_i ET - f_j (NE + s_i EE)),  s_0 = f_0 = 0.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void couple(const Source& source, int g, int o, Friction<Size>& fr) noexcept {
+SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<Size>& fr,
+                            Problem<Size>& hlcp) noexcept {
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
@@ -246,8 +251,8 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, Friction<Size>& 
   const int m = table.row_of[table.first_contact[g]], w = table.row_of[table.first_contact[o]];
   const double sigma = fr.sigma[o], s = fr.sliding[g].along, s_o = fr.sliding[o].along, f_o = fr.sliding[o].across;
   const auto set = [&](int i, int j, double S, double S_star) SLIDEWAY_FOLD {
-    fr.hlcp.plus[m + i][w + j] = S + S_star;
-    fr.hlcp.minus[m + i][w + j] = S - S_star;
+    hlcp.plus[m + i][w + j] = S + S_star;
+    hlcp.minus[m + i][w + j] = S - S_star;
   };
   set(0, 0, NN, sigma * NT);
   if (two) set(1, 0, NN + s * EN, sigma * (NT + s * ET));
@@ -261,7 +266,8 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, Friction<Size>& 
 /// Cost: guides^2 times the overlap of their paths.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, Gains gains,
-                              const signed char* mode, Friction<Size>& fr, Reaction<Size>& r) noexcept {
+                              const signed char* mode, Friction<Size>& fr, Reaction<Size>& r,
+                              Problem<Size>& hlcp) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
   for_each<Source, Size::coordinates>(table.free,
@@ -272,21 +278,25 @@ SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, c
 
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
     fr.sigma[g] = mode[g] > 0 ? -scene.guide[g].mu : scene.guide[g].mu;
-    if (table.is_rough[g]) guide_rows(source, k, d, g, fr);
+    if (table.is_rough[g]) guide_rows(source, k, d, g, fr, hlcp);
   });
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
     for_each<Source, Size::guides>(scene.guides, [&](int o) SLIDEWAY_FOLD {
-      if (table.is_rough[g] && table.is_rough[o]) couple(source, g, o, fr);
+      if (table.is_rough[g] && table.is_rough[o]) couple(source, g, o, fr, hlcp);
     });
   });
-  if (table.ideal > 0) {
-    for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
+  for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
+    double squared = 0.5 * (hlcp.plus[m][m] + hlcp.minus[m][m]);
+    if (table.ideal > 0) {  // S has what the ideal rows leave of the row
       const int c = table.rough_contact[m], g = table.guide_of[c];
-      const double along = c == table.first_contact[g] ? 0 : fr.sliding[g].along;
-      const double left = 0.5 * (fr.hlcp.plus[m][m] + fr.hlcp.minus[m][m]);
-      independent = independent && survives(source, fr.N[g], fr.E[g], along, left);
-    });
-  }
+      const bool first = c == table.first_contact[g];
+      const double whole = squared_length(source, fr.N[g], first ? fr.N[g] : fr.E[g], first ? 0 : fr.sliding[g].along);
+      const double bound = rank_bound(source);
+      independent = independent && squared > bound * bound * whole;
+      squared = whole;
+    }
+    fr.norm[m] = std::sqrt(squared);
+  });
   return independent;
 }
 

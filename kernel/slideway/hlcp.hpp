@@ -20,19 +20,6 @@ namespace slideway {
 
 namespace hlcp_detail {
 
-/// The residual for n = 2, as check() computes it. False if too large, or if a row's terms are so small that its
-/// residual could be lost.
-inline bool residual_two(const double (&w)[2][2], const double* b, const double* x, double& residual) noexcept {
-  const double term[2][2] = {{w[0][0] * x[0], w[0][1] * x[1]}, {w[1][0] * x[0], w[1][1] * x[1]}};
-  const double scale0 = (std::fabs(term[0][0]) + std::fabs(term[0][1])) + std::fabs(b[0]);
-  const double scale1 = (std::fabs(term[1][0]) + std::fabs(term[1][1])) + std::fabs(b[1]);
-  const double ratio0 = std::fabs((term[0][0] + term[0][1]) - b[0]) / scale0;
-  const double ratio1 = std::fabs((term[1][0] + term[1][1]) - b[1]) / scale1;
-  residual = ratio0 > ratio1 ? ratio0 : ratio1;
-  const double limit = residual_limit(2);
-  return (scale0 >= 0x1p-900) & (scale1 >= 0x1p-900) & (ratio0 <= limit) & (ratio1 <= limit);
-}
-
 /// n = 1: a quotient. The W-property is that A+ and A- have one sign, and then b decides the sign of x.
 template <int Capacity>
 inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
@@ -52,41 +39,110 @@ inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& sol
   solution.residual = 0x1p-53;  // the quotient is correctly rounded
 }
 
-/// n = 2: the W-property by its four determinants, with more room than their rounding errors and the tie window need,
-/// then at most four trials.
+/// All ones for the sign -1, else zero.
+inline Word mask_of(signed char sign) noexcept { return Word{0} - static_cast<Word>(sign == -1); }
+
+/// A trial for n = 2, in registers.
+struct PairTrial {
+  Pair x;
+  double residual;
+  bool clear;     // as clear()
+  bool accurate;  // as check()
+};
+
+/// Solves W x = b for n = 2 and checks it: the same operations as solve_two(), clear() and check() in two lanes.
+template <int Capacity>
+inline PairTrial try_pair(const Hlcp<Capacity>& problem, Word negative0, Word negative1) noexcept {
+  const PairBits mask = {static_cast<long long>(negative0), static_cast<long long>(negative1)};
+  const Pair row0 = choose(load(problem.plus[0]), load(problem.minus[0]), mask);
+  const Pair row1 = choose(load(problem.plus[1]), load(problem.minus[1]), mask);
+  const Pair b = load(problem.b);
+  const double w[2][2] = {{row0[0], row0[1]}, {row1[0], row1[1]}};
+  const double det = w[0][0] * w[1][1] - w[1][0] * w[0][1];
+  const Two two = solve_two(w, row_size(problem, 0), row_size(problem, 1), det, b[0], b[1]);
+  const Pair x = {two.x0, two.x1};
+  const Pair along = (Pair)((PairBits)x ^ (mask & sign_bits));
+  const Pair size = magnitude(x);
+  const double least = along[0] < along[1] ? along[0] : along[1];
+  const double largest = size[0] > size[1] ? size[0] : size[1];
+  const Pair upper = row0 * x;
+  const Pair lower = row1 * x;
+  const Pair first = {upper[0], lower[0]};
+  const Pair second = {upper[1], lower[1]};
+  const Pair scale = (magnitude(first) + magnitude(second)) + magnitude(b);
+  const Pair ratio = magnitude((first + second) - b) / scale;
+  const double worst = ratio[0] > ratio[1] ? ratio[0] : ratio[1];
+  const double lowest = scale[0] < scale[1] ? scale[0] : scale[1];
+  // A ratio that is no number makes the sum of both none, and the comparison false.
+  const bool good = worst <= residual_limit(2) && ratio[0] + ratio[1] <= 1.0 && lowest >= 0x1p-900;
+  return {x, worst, least > tie_window * largest, good};
+}
+
+/// Whether the four determinants of W(s) have one sign and at least 2^-19 times the product of the row sizes.
+template <int Capacity>
+inline bool pair_has_w_property(const Hlcp<Capacity>& problem, Pair size) noexcept {
+  const Pair p0 = load(problem.plus[0]);
+  const Pair p1 = load(problem.plus[1]);
+  const Pair m0 = load(problem.minus[0]);
+  const Pair m1 = load(problem.minus[1]);
+  const Pair pp = p0 * Pair{p1[1], p1[0]};
+  const Pair mm = m0 * Pair{m1[1], m1[0]};
+  const Pair pm = Pair{p0[0], m0[1]} * Pair{m1[1], p1[0]};
+  const Pair mp = Pair{m0[0], p0[1]} * Pair{p1[1], m1[0]};
+  const Pair same = Pair{pp[0], mm[0]} - Pair{pp[1], mm[1]};
+  const Pair mixed = Pair{pm[0], mp[0]} - Pair{pm[1], mp[1]};
+  const long long flip = ((PairBits)same)[0] & static_cast<long long>(sign_bit);
+  const Pair a = (Pair)((PairBits)same ^ PairBits{flip, flip});
+  const Pair c = (Pair)((PairBits)mixed ^ PairBits{flip, flip});
+  const Pair low = {a[0] < c[0] ? a[0] : c[0], a[1] < c[1] ? a[1] : c[1]};
+  return (low[0] < low[1] ? low[0] : low[1]) > 0x1p-19 * (size[0] * size[1]);
+}
+
+template <int Capacity>
+inline void accept_pair(HlcpSolution<Capacity>& solution, Pair x, Word negative0, Word negative1, int solves,
+                        double residual) noexcept {
+  store(solution.x, x);
+  solution.sign[0] = static_cast<signed char>(1 | negative0);
+  solution.sign[1] = static_cast<signed char>(1 | negative1);
+  solution.status = Status::ok;
+  solution.uniqueness = Uniqueness::certified;
+  solution.solves = solves;
+  solution.residual = residual;
+}
+
+/// n = 2 when the first signs were not the solution's: at most three more trials; by the W-property they suffice, ties
+/// apart.
+template <int Capacity>
+[[gnu::noinline]] void solve_pair_again(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution,
+                                        HlcpOptions options) noexcept {
+  Word negative[2] = {mask_of(solution.sign[0]), mask_of(solution.sign[1])};
+  for (int solves = 1; solves <= 4; ++solves) {
+    const PairTrial trial = try_pair(problem, negative[0], negative[1]);
+    if (trial.x[0] == 0.0 && trial.x[1] == 0.0) return accept_pair(solution, Pair{0.0, 0.0}, 0, 0, solves, 0.0);
+    if (trial.clear) {
+      if (!trial.accurate) break;
+      return accept_pair(solution, trial.x, negative[0], negative[1], solves, trial.residual);
+    }
+    negative[0] = Word{0} - (bits(trial.x[0]) >> 63);
+    negative[1] = Word{0} - (bits(trial.x[1]) >> 63);
+  }
+  solve_with_care(problem, 2, solution, options, 1);
+}
+
+/// n = 2: the W-property by its four determinants, with more room than their rounding errors and the tie window need
+/// (the determinant of every matrix between A+ and A- is between them, so |W^-1| R <= 2^20); then one trial if the
+/// signs were right.
 template <int Capacity>
 inline void solve_pair(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
-  const auto& p = problem.plus;
-  const auto& m = problem.minus;
-  const double size0 = row_size(problem, 0);
-  const double size1 = row_size(problem, 1);
-  const double det[4] = {p[0][0] * p[1][1] - p[1][0] * p[0][1], m[0][0] * p[1][1] - m[1][0] * p[0][1],
-                         p[0][0] * m[1][1] - p[1][0] * m[0][1], m[0][0] * m[1][1] - m[1][0] * m[0][1]};
-  const double low0 = det[0] < det[1] ? det[0] : det[1];
-  const double low1 = det[2] < det[3] ? det[2] : det[3];
-  const double high0 = det[0] > det[1] ? det[0] : det[1];
-  const double high1 = det[2] > det[3] ? det[2] : det[3];
-  const double margin = 0x1p-19 * (size0 * size1);
-  const bool one_sign = ((low0 < low1 ? low0 : low1) > margin) | ((high0 > high1 ? high0 : high1) < -margin);
-  const bool usual = one_sign & sizable(size0) & sizable(size1) & bounded(problem.b[0]) & bounded(problem.b[1]);
-  bool negative[2] = {solution.sign[0] == -1, solution.sign[1] == -1};
-  for (int solves = 1; usual && solves <= 4; ++solves) {
-    const double w[2][2] = {{either(negative[0], m[0][0], p[0][0]), either(negative[1], m[0][1], p[0][1])},
-                            {either(negative[0], m[1][0], p[1][0]), either(negative[1], m[1][1], p[1][1])}};
-    const double chosen = w[0][0] * w[1][1] - w[1][0] * w[0][1];
-    const Two x = solve_two(w, size0, size1, chosen, problem.b[0], problem.b[1]);
-    const signed char signs[2] = {static_cast<signed char>(negative[0] ? -1 : 1),
-                                  static_cast<signed char>(negative[1] ? -1 : 1)};
-    const double both[2] = {x.x0, x.x1};
-    if (clear(both, std::integral_constant<int, 2>{}, signs)) {
-      double residual = 0.0;
-      if (!residual_two(w, problem.b, both, residual)) break;
-      return accept(solution, std::integral_constant<int, 2>{}, both, Uniqueness::certified, solves, residual);
-    }
-    negative[0] = x.x0 < 0.0;
-    negative[1] = x.x1 < 0.0;
-  }
-  solve_with_care(problem, 2, solution, options, usual ? 1 : 0);
+  const Word negative0 = mask_of(solution.sign[0]);
+  const Word negative1 = mask_of(solution.sign[1]);
+  const PairTrial trial = try_pair(problem, negative0, negative1);
+  const Pair size = {row_size(problem, 0), row_size(problem, 1)};
+  const bool usual = pair_has_w_property(problem, size) &&
+                     (sizable(size[0]) & sizable(size[1]) & bounded(problem.b[0]) & bounded(problem.b[1])) != 0;
+  if (__builtin_expect(!usual, 0)) return solve_with_care(problem, 2, solution, options, 0);
+  if (__builtin_expect(!(trial.clear && trial.accurate), 0)) return solve_pair_again(problem, solution, options);
+  accept_pair(solution, trial.x, negative0, negative1, 1, trial.residual);
 }
 
 /// n >= 3: one trial, and nothing more if the signs were right and the certificate holds.
@@ -95,7 +151,7 @@ template <int Capacity, class Count>
                                   HlcpOptions options) noexcept {
   Trial<Capacity> trial;
   if (attempt(problem, n, solution.sign, trial) && clear(trial.x, n, solution.sign)) {
-    const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, static_cast<int>(n), trial);
+    const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, n, trial);
     if (proven || n > decidable)
       return accept(solution, n, trial.x, proven ? Uniqueness::certified : Uniqueness::unproven, 1, trial.residual);
   }

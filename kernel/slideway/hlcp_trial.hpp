@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <slideway/hlcp_problem.hpp>
+#include <type_traits>
 #include <utility>
 
 namespace slideway::hlcp_detail {
@@ -73,6 +74,10 @@ inline Pair load(const double* from) noexcept {
   return pair;
 }
 
+/// The same from numbers that were stored one by one just now: such a pair cannot be forwarded from the store buffer in
+/// one piece.
+inline Pair gather(const double* from) noexcept { return Pair{from[0], from[1]}; }
+
 inline void store(double* to, Pair pair) noexcept { std::memcpy(to, &pair, sizeof pair); }
 
 inline Pair magnitude(Pair pair) noexcept {
@@ -80,9 +85,31 @@ inline Pair magnitude(Pair pair) noexcept {
   return (Pair)((PairBits)pair & PairBits{rest, rest});
 }
 
+inline constexpr PairBits sign_bits = {static_cast<long long>(sign_bit), static_cast<long long>(sign_bit)};
+
+/// `plus` where the mask is zero, `minus` where it is all ones.
+inline Pair choose(Pair plus, Pair minus, PairBits mask) noexcept {
+  return (Pair)((PairBits)plus ^ (((PairBits)plus ^ (PairBits)minus) & mask));
+}
+
 /// (c, -|c|): one multiply-subtract then acts as L or U in the first lane and as its comparison matrix in the second.
 inline Pair comparison(double c) noexcept {
   return (Pair)((PairBits)Pair{c, c} | PairBits{0, static_cast<long long>(sign_bit)});
+}
+
+template <int... I, class Body>
+[[gnu::always_inline]] inline void each_of(std::integer_sequence<int, I...>, const Body& body) noexcept {
+  (body(I), ...);
+}
+
+/// body(0), ..., body(n - 1); written out one by one when n is a constant, so that the loops inside have constant
+/// bounds.
+template <class Count, class Body>
+[[gnu::always_inline]] inline void each(Count n, const Body& body) noexcept {
+  if constexpr (std::is_same_v<Count, int>)
+    for (int i = 0; i < n; ++i) body(i);
+  else
+    each_of(std::make_integer_sequence<int, Count::value>{}, body);
 }
 
 /// The limit for the residual as computed. Gaussian elimination with one step of refinement in working precision
@@ -94,31 +121,33 @@ inline double residual_limit(int n) noexcept { return 4.0 * (n + 1) * 0x1p-53; }
 /// overflows.
 template <int Capacity, class Count>
 inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
-  alignas(16) long long minus[Trial<Capacity>::stride];
-  for (int j = 0; j < n; ++j) minus[j] = -static_cast<long long>(signs[j] == -1);
+  PairBits minus[Trial<Capacity>::stride / 2];
+  for (int j = 0; j < n; j += 2)
+    minus[j / 2] =
+        PairBits{-static_cast<long long>(signs[j] == -1), j + 1 < n ? -static_cast<long long>(signs[j + 1] == -1) : 0};
   unsigned good = 1;
-  for (int i = 0; i < n; ++i) {
-    Pair entries = {0.0, 0.0};
-    Pair spread = {0.0, 0.0};
-    for (int j = 0; j < n; j += 2) {
-      const bool last = j + 1 == n;
-      const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
-      const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
-      const PairBits mask = last ? PairBits{minus[j], 0} : *reinterpret_cast<const PairBits*>(&minus[j]);
-      const Pair w = (Pair)((PairBits)p ^ (((PairBits)p ^ (PairBits)m) & mask));
-      store(&trial.w[i][j], w);
-      store(&trial.lu[i][j], w);
-      entries += magnitude(w);
-      spread += magnitude(p - m);
-    }
-    const double perturbation = spread[0] + spread[1];
-    const double size = perturbation + (entries[0] + entries[1]);
-    good = good & sizable(size) & bounded(problem.b[i]);
-    trial.size[i] = size;
-    trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
-    store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
-    trial.row[i] = i;
-  }
+  each(
+      n, [&](int i) __attribute__((always_inline)) {
+        Pair entries = {0.0, 0.0};
+        Pair spread = {0.0, 0.0};
+        for (int j = 0; j < n; j += 2) {
+          const bool last = j + 1 == n;
+          const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
+          const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
+          const Pair w = choose(p, m, minus[j / 2]);
+          store(&trial.w[i][j], w);
+          store(&trial.lu[i][j], w);
+          entries += magnitude(w);
+          spread += magnitude(p - m);
+        }
+        const double perturbation = spread[0] + spread[1];
+        const double size = perturbation + (entries[0] + entries[1]);
+        good = good & sizable(size) & bounded(problem.b[i]);
+        trial.size[i] = size;
+        trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
+        store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
+        trial.row[i] = i;
+      });
   return good != 0;
 }
 
@@ -154,23 +183,23 @@ inline void exchange(Trial<Capacity>& trial, int k, int p, Count n) noexcept {
 template <int Capacity, class Count>
 inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
   Word least = bits(4.0);
-  for (int k = 0; k < n; ++k) {
-    const Word best = pivot_in(trial, k, n);
-    const int p = 31 - static_cast<int>(best & 31);
-    least = best < least ? best : least;
-    if (best < bits(0x1p-900)) break;
-    if (p != k) exchange(trial, k, p, n);
-    const double inverse = 1.0 / trial.lu[k][k];
-    trial.inverse[k] = inverse;
-    const Pair side = load(trial.side[k]);
-    for (int i = k + 1; i < n; ++i) {
-      const double l = trial.lu[i][k] * inverse;
-      for (int j = (k + 1) & ~1; j < n; j += 2)
-        store(&trial.lu[i][j], load(&trial.lu[i][j]) - Pair{l, l} * load(&trial.lu[k][j]));
-      trial.lu[i][k] = l;
-      store(trial.side[i], load(trial.side[i]) - comparison(l) * side);
-    }
-  }
+  each(
+      n, [&](int k) __attribute__((always_inline)) {
+        const Word best = pivot_in(trial, k, n);
+        const int p = 31 - static_cast<int>(best & 31);
+        least = best < least ? best : least;
+        if (p != k) exchange(trial, k, p, n);
+        const double inverse = 1.0 / trial.lu[k][k];
+        trial.inverse[k] = inverse;
+        const Pair side = load(trial.side[k]);
+        for (int i = k + 1; i < n; ++i) {
+          const double l = trial.lu[i][k] * inverse;
+          for (int j = (k + 1) & ~1; j < n; j += 2)
+            store(&trial.lu[i][j], load(&trial.lu[i][j]) - Pair{l, l} * load(&trial.lu[k][j]));
+          trial.lu[i][k] = l;
+          store(trial.side[i], load(trial.side[i]) - comparison(l) * side);
+        }
+      });
   return real(least & ~Word{31});
 }
 
@@ -179,14 +208,16 @@ template <int Capacity, class Count>
 inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
   double reach = 0.0;
   trial.x[Trial<Capacity>::stride - 1] = 0.0;
-  for (int j = n - 1; j >= 0; --j) {
-    const double inverse = trial.inverse[j];
-    const Pair value = load(trial.side[j]) * Pair{inverse, std::fabs(inverse)};
-    store(trial.side[j], value);
-    trial.x[j] = value[0];
-    reach = value[1] > reach ? value[1] : reach;
-    for (int i = 0; i < j; ++i) store(trial.side[i], load(trial.side[i]) - comparison(trial.lu[i][j]) * value);
-  }
+  each(
+      n, [&](int solved) __attribute__((always_inline)) {
+        const int j = n - 1 - solved;
+        const double inverse = trial.inverse[j];
+        const Pair value = load(trial.side[j]) * Pair{inverse, std::fabs(inverse)};
+        store(trial.side[j], value);
+        trial.x[j] = value[0];
+        reach = value[1] > reach ? value[1] : reach;
+        for (int i = 0; i < j; ++i) store(trial.side[i], load(trial.side[i]) - comparison(trial.lu[i][j]) * value);
+      });
   trial.reach = reach;
 }
 
@@ -204,22 +235,23 @@ inline void check(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial
   const double limit = residual_limit(n);
   double worst = 0.0;
   bool good = true;
-  for (int i = 0; i < n; ++i) {
-    Pair sum = {0.0, 0.0};
-    Pair size = {0.0, 0.0};
-    for (int j = 0; j < n; j += 2) {
-      const Pair term = load(&trial.w[i][j]) * load(&trial.x[j]);
-      sum += term;
-      size += magnitude(term);
-    }
-    const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
-    const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
-    const bool lost = !(scale >= 0x1p-900);
-    if (lost && vanishes(problem, trial, i, n)) continue;
-    const double ratio = miss / scale;
-    good = good & !lost & (ratio <= limit);
-    worst = ratio > worst ? ratio : worst;
-  }
+  each(
+      n, [&](int i) __attribute__((always_inline)) {
+        Pair sum = {0.0, 0.0};
+        Pair size = {0.0, 0.0};
+        for (int j = 0; j < n; j += 2) {
+          const Pair term = load(&trial.w[i][j]) * gather(&trial.x[j]);
+          sum += term;
+          size += magnitude(term);
+        }
+        const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
+        const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
+        const bool lost = !(scale >= 0x1p-900);
+        if (lost && vanishes(problem, trial, i, n)) return;
+        const double ratio = miss / scale;
+        good = good & !lost & (ratio <= limit);
+        worst = ratio > worst ? ratio : worst;
+      });
   trial.residual = worst;
   trial.accurate = good;
 }
@@ -277,60 +309,6 @@ inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
     least = along < least ? along : least;
   }
   return least > tie_window * largest || largest == 0.0;
-}
-
-/// Whether all determinants of W(s), n = 3 or 4, have one strict sign beyond rounding errors: the column W-property
-/// (Sznajder & Gowda 1995). Laplace expansion along pairs of rows: every 2x2 minor is shared by four patterns. n = 3
-/// has a fourth row and column of the unit matrix. Each term has at most 3 + 5 roundings, and the product of the row
-/// sizes bounds the sum of all terms.
-template <int Capacity>
-inline bool determinants_agree(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
-  static_assert(Capacity >= 3, "rows and columns exist");
-  double column[4][2][4] = {};  // of A+ and A-, each from top to bottom
-  column[3][0][3] = column[3][1][3] = 1.0;
-  double size = 1.0;
-  for (int i = 0; i < n; ++i) {
-    size *= trial.size[i];
-    for (int j = 0; j < n; ++j) {
-      column[j][0][i] = problem.plus[i][j];
-      column[j][1][i] = problem.minus[i][j];
-    }
-  }
-  constexpr int left[6] = {0, 0, 0, 1, 1, 2};
-  constexpr int right[6] = {1, 2, 3, 2, 3, 3};
-  double upper[6][4];
-  double lower[6][4];
-  for (int pair = 0; pair < 6; ++pair)
-    for (int signs = 0; signs < 4; ++signs) {
-      const double* a = column[left[pair]][signs & 1];
-      const double* c = column[right[pair]][signs >> 1];
-      upper[pair][signs] = a[0] * c[1] - a[1] * c[0];
-      lower[pair][signs] = a[2] * c[3] - a[3] * c[2];
-    }
-  double least = HUGE_VAL;
-  double most = -HUGE_VAL;
-  for (int code = 0; code < (1 << n); ++code) {
-    const auto signs = [&](int pair) { return ((code >> left[pair]) & 1) | (((code >> right[pair]) & 1) << 1); };
-    double det = upper[0][signs(0)] * lower[5][signs(5)];
-    det -= upper[1][signs(1)] * lower[4][signs(4)];
-    det += upper[2][signs(2)] * lower[3][signs(3)];
-    det += upper[3][signs(3)] * lower[2][signs(2)];
-    det -= upper[4][signs(4)] * lower[1][signs(1)];
-    det += upper[5][signs(5)] * lower[0][signs(0)];
-    least = det < least ? det : least;
-    most = det > most ? det : most;
-  }
-  const double doubt = 0x1p-48 * size;
-  return least > doubt || most < -doubt;
-}
-
-/// Whether uniqueness is proved for the trial of clear signs: by contraction, for n <= 4 else by the determinants,
-/// where it must be shown separately that x owes no sign to rounding (see tie_window).
-template <int Capacity>
-inline bool proves(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
-  if (contracts(problem, n, trial)) return true;
-  double z[Capacity];
-  return n <= 4 && reach_of(trial, n, trial.size, z) <= 0x1p22 && determinants_agree(problem, n, trial);
 }
 
 /// What the two-by-two formula needs beside W: the row sizes |a+_i0| + |a+_i1| + |a-_i0| + |a-_i1|.
@@ -393,7 +371,7 @@ inline void correct(const Hlcp<Capacity>& problem, int n, const double* rest, Tr
 /// One step of iterative refinement; it depends on the data and the signs alone.
 template <int Capacity>
 inline void refine(const Hlcp<Capacity>& problem, int n, Trial<Capacity>& trial) noexcept {
-  double rest[Capacity];
+  double rest[Capacity] = {};
   residual(problem, n, trial, rest);
   correct(problem, n, rest, trial);
   check(problem, n, trial);
@@ -425,27 +403,49 @@ inline double lu_error(const Trial<Capacity>& trial, int n) noexcept {
 }
 
 /// z = M(U)^-1 M(L)^-1 P v, an upper bound of |W^-1| v for v >= 0; returns its largest component. n^2 multiplications.
-template <int Capacity>
-inline double reach_of(const Trial<Capacity>& trial, int n, const double* v, double* z) noexcept {
+/// Sums run over pairs; what a pair reaches beyond its triangle meets a zero.
+template <int Capacity, class Count>
+inline double reach_of(const Trial<Capacity>& trial, Count n, const double* v, double* z) noexcept {
+  alignas(16) double y[Trial<Capacity>::stride] = {};
+  alignas(16) double w[Trial<Capacity>::stride] = {};
+  each(
+      n, [&](int i) __attribute__((always_inline)) {
+        Pair sum = {v[trial.row[i]], 0.0};
+        for (int k = 0; k < i; k += 2) sum += magnitude(load(&trial.lu[i][k])) * gather(&y[k]);
+        y[i] = sum[0] + sum[1];
+      });
   double largest = 0.0;
-  for (int i = 0; i < n; ++i) {
-    double sum = v[trial.row[i]];
-    for (int k = 0; k < i; ++k) sum += std::fabs(trial.lu[i][k]) * z[k];
-    z[i] = sum;
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    z[j] *= std::fabs(trial.inverse[j]);
-    for (int i = 0; i < j; ++i) z[i] += std::fabs(trial.lu[i][j]) * z[j];
-    largest = z[j] > largest ? z[j] : largest;
-  }
+  each(
+      n, [&](int solved) __attribute__((always_inline)) {
+        const int i = n - 1 - solved;
+        Pair sum = {y[i], 0.0};
+        for (int j = (i + 1) & ~1; j < n; j += 2) sum += magnitude(load(&trial.lu[i][j])) * gather(&w[j]);
+        w[i] = (sum[0] + sum[1]) * std::fabs(trial.inverse[i]);
+        z[i] = w[i];
+        largest = z[i] > largest ? z[i] : largest;
+      });
   return largest;
+}
+
+/// v = (|A+ - A-| + allowance) u for 0 <= u <= 1.
+template <int Capacity, class Count>
+inline void perturb(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial, const double* u,
+                    double* v) noexcept {
+  each(
+      n, [&](int i) __attribute__((always_inline)) {
+        Pair sum = {allowance * trial.size[i], 0.0};
+        for (int j = 0; j + 1 < n; j += 2)
+          sum += magnitude(load(&problem.plus[i][j]) - load(&problem.minus[i][j])) * gather(&u[j]);
+        if (n % 2 != 0) sum[1] += std::fabs(problem.plus[i][n - 1] - problem.minus[i][n - 1]) * u[n - 1];
+        v[i] = sum[0] + sum[1];
+      });
 }
 
 /// Whether |W^-1| (|A+ - A-| + allowance) u < u for some u > 0, so that no matrix between A+ and A- is singular
 /// (spectral radius below 1: Rohn) and the W-property holds: u = 1 was tried with the solve, here follow two steps of
 /// power iteration. O(n^2) each. If a step increases every component no u can do (Collatz-Wielandt).
-template <int Capacity>
-inline bool contracts(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
+template <int Capacity, class Count>
+inline bool contracts(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
   if (n > 16 && !(lu_error(trial, n) <= 0.5 * allowance)) return false;  // to 16, growth of 2^(n-1) is allowed
   if (trial.reach <= contracting) return true;
   double u[Capacity];
@@ -457,20 +457,72 @@ inline bool contracts(const Hlcp<Capacity>& problem, int n, const Trial<Capacity
   }
   double largest = trial.reach;
   for (int step = 0; step < 2; ++step) {
-    bool hopeless = true;
-    for (int i = 0; i < n; ++i) hopeless = hopeless && z[i] >= u[i];
-    if (hopeless || !(largest < HUGE_VAL)) return false;
-    for (int i = 0; i < n; ++i) u[i] = z[i] / largest;
-    for (int i = 0; i < n; ++i) {
-      v[i] = allowance * trial.size[i];
-      for (int j = 0; j < n; ++j) v[i] += std::fabs(problem.plus[i][j] - problem.minus[i][j]) * u[j];
-    }
+    double least = HUGE_VAL;
+    for (int i = 0; i < n; ++i) least = z[i] - u[i] < least ? z[i] - u[i] : least;
+    if (!(least < 0.0) || !(largest < HUGE_VAL)) return false;
+    const double unit = 1.0 / largest;
+    for (int i = 0; i < n; ++i) u[i] = z[i] * unit;
+    perturb(problem, n, trial, u, v);
     largest = reach_of(trial, n, v, z);
-    bool below = true;
-    for (int i = 0; i < n; ++i) below = below && z[i] <= contracting * u[i];
-    if (below) return true;
+    double most = -HUGE_VAL;
+    for (int i = 0; i < n; ++i) most = z[i] - contracting * u[i] > most ? z[i] - contracting * u[i] : most;
+    if (most <= 0.0) return true;
   }
   return false;
+}
+
+/// Whether all determinants of W(s), n = 3 or 4, have one strict sign beyond rounding errors: the column W-property
+/// (Sznajder & Gowda 1995). Laplace expansion along pairs of rows: every 2x2 minor is shared by four patterns. n = 3
+/// has a fourth row and column of the unit matrix. Each term has at most 3 + 5 roundings, and the product of the row
+/// sizes bounds the sum of all terms.
+template <int Capacity>
+inline bool determinants_agree(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
+  static_assert(Capacity >= 3, "rows and columns exist");
+  double column[4][2][4] = {};  // of A+ and A-, each from top to bottom
+  column[3][0][3] = column[3][1][3] = 1.0;
+  double size = 1.0;
+  for (int i = 0; i < n; ++i) {
+    size *= trial.size[i];
+    for (int j = 0; j < n; ++j) {
+      column[j][0][i] = problem.plus[i][j];
+      column[j][1][i] = problem.minus[i][j];
+    }
+  }
+  constexpr int left[6] = {0, 0, 0, 1, 1, 2};
+  constexpr int right[6] = {1, 2, 3, 2, 3, 3};
+  double upper[6][4];
+  double lower[6][4];
+  for (int pair = 0; pair < 6; ++pair)
+    for (int signs = 0; signs < 4; ++signs) {
+      const double* a = column[left[pair]][signs & 1];
+      const double* c = column[right[pair]][signs >> 1];
+      upper[pair][signs] = a[0] * c[1] - a[1] * c[0];
+      lower[pair][signs] = a[2] * c[3] - a[3] * c[2];
+    }
+  double least = HUGE_VAL;
+  double most = -HUGE_VAL;
+  for (int code = 0; code < (1 << n); ++code) {
+    const auto signs = [&](int pair) { return ((code >> left[pair]) & 1) | (((code >> right[pair]) & 1) << 1); };
+    double det = upper[0][signs(0)] * lower[5][signs(5)];
+    det -= upper[1][signs(1)] * lower[4][signs(4)];
+    det += upper[2][signs(2)] * lower[3][signs(3)];
+    det += upper[3][signs(3)] * lower[2][signs(2)];
+    det -= upper[4][signs(4)] * lower[1][signs(1)];
+    det += upper[5][signs(5)] * lower[0][signs(0)];
+    least = det < least ? det : least;
+    most = det > most ? det : most;
+  }
+  const double doubt = 0x1p-48 * size;
+  return least > doubt || most < -doubt;
+}
+
+/// Whether uniqueness is proved for the trial of clear signs: by contraction, for n <= 4 else by the determinants,
+/// where it must be shown separately that x owes no sign to rounding (see tie_window).
+template <int Capacity, class Count>
+inline bool proves(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
+  if (contracts(problem, n, trial)) return true;
+  double z[Capacity];
+  return n <= 4 && reach_of(trial, n, trial.size, z) <= 0x1p22 && determinants_agree(problem, n, trial);
 }
 
 /// Solves with W(signs), n = 1 and n = 2, by the formulas that solve_one and solve_pair use, so that the bits agree.

@@ -53,19 +53,20 @@ struct EnergyFlow {
   double constraint_work = 0;  ///< by constraint forces on the drift: sum of lambda Phi'
 };
 
-/// Forces at one instant, with the slip directions and contact signs that hold just after it.
+/// Forces at one instant, with the slip directions and contact signs that hold just after it. Plain data, filled in by
+/// whoever makes it: valid only beside a report that says ok.
 template <class Size>
 struct Reaction {
-  double t = 0;
-  double lambda[at_least_one(Size::contacts)] = {};           ///< on the slider along n, N; guide by guide
-  double friction[at_least_one(Size::guides)] = {};           ///< on the slider along `tangent`, N
-  double slip[at_least_one(Size::guides)] = {};               ///< sliding speed of the slider along `tangent`, m/s
-  double drive[at_least_one(Size::drives)] = {};              ///< on the driven coordinate, N m | N
-  Vec2 pin[at_least_one(Size::pins)] = {};                    ///< on body a, world's frame, N
-  double acceleration[at_least_one(Size::coordinates)] = {};  ///< q''
-  EnergyFlow power;                                           ///< W
-  double drift_position = 0;                                  ///< max |Phi|, |phi|
-  double drift_velocity = 0;                                  ///< max |Phi'|, |phi'|
+  double t;
+  double lambda[at_least_one(Size::contacts)];           ///< on the slider along n, N; guide by guide
+  double friction[at_least_one(Size::guides)];           ///< on the slider along `tangent`, N
+  double slip[at_least_one(Size::guides)];               ///< sliding speed of the slider along `tangent`, m/s
+  double drive[at_least_one(Size::drives)];              ///< on the driven coordinate, N m | N
+  Vec2 pin[at_least_one(Size::pins)];                    ///< on body a, world's frame, N
+  double acceleration[at_least_one(Size::coordinates)];  ///< q''
+  EnergyFlow power;                                      ///< W
+  double drift_position;                                 ///< max |Phi|, |phi|
+  double drift_velocity;                                 ///< max |Phi'|, |phi'|
 };
 
 /// What a step (or a reaction) says of itself.

@@ -48,37 +48,44 @@ class BasicStepper {
   /// No heap; at most four evaluations of `accelerate` (three projections for kinematic).
   Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept {
     Report report;
-    State next = state;
-    if (dt != next.dt) {
-      next.start = state.time();
-      next.steps = 0;
-      next.dt = dt;
-    }
-    if (!(dt > 0) || !detail::finite(dt) || !finite(state, inputs)) {
+    if (!(dt > 0) || !detail::finite(dt)) {
       report.status = Status::invalid_input;
       return report;
     }
-    report.status = method == Method::rk4     ? step_rk4(next, inputs, report)
-                    : method == Method::euler ? step_euler(next, inputs, report)
-                                              : step_kinematic(next, inputs, report);
-    ++next.steps;
-    if (report.status == Status::ok && !finite(next, inputs)) report.status = Status::inaccurate;
+    const bool same_dt = dt == state.dt;
+    const double start = same_dt ? state.start : state.time();
+    const long long steps = same_dt ? state.steps : 0;
+    const double t = start + static_cast<double>(steps) * dt;
+    Next next;
+    begin(state, next);
+    report.status = method == Method::rk4     ? step_rk4(state, t, dt, inputs, next, report)
+                    : method == Method::euler ? step_euler(state, t, dt, inputs, next, report)
+                                              : step_kinematic(state, t, dt, inputs, next, report);
+    if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::inaccurate;
     if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
       report.status = Status::drift_limit;
     }
-    if (report.status == Status::ok) state = next;
+    if (report.status != Status::ok) {
+      if (!finite(state, inputs)) report.status = Status::invalid_input;
+      return report;
+    }
+    report.unlocated_events = finish(next, state);
+    state.start = start;
+    state.dt = dt;
+    state.steps = steps + 1;
     return report;
   }
 
   /// Forces and accelerations at the state. r is valid when the report's status is ok.
   Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
     Report report;
-    if (!finite(state, inputs)) {
-      report.status = Status::invalid_input;
-      return report;
+    Next at;
+    begin(state, at);
+    report.status = evaluate(state.time(), 0, state.q, state.v, inputs, at, r, report);
+    if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
+      report.status = Status::drift_limit;
     }
-    State copy = state;
-    report.status = evaluate(state.time(), 0, copy.q, copy.v, inputs, copy, r, report);
+    if (report.status != Status::ok && !finite(state, inputs)) report.status = Status::invalid_input;
     return report;
   }
 
@@ -137,119 +144,139 @@ class BasicStepper {
     return k;
   }
 
-  /// A sum of finite numbers far from overflow is finite, and one that is not finite makes it so.
-  bool finite(const State& state, const Inputs& inputs) const noexcept {
-    double sum = state.start;
+  /// What a step makes, apart from the state until it is known to be good. `reversed` marks guides and contacts whose
+  /// slip direction or sign was another at some stage than before the step.
+  struct Next {
+    double q[n], v[n];
+    signed char mode[at_least_one(Size::guides)], sign[at_least_one(Size::contacts)];
+    bool slip_reversed[at_least_one(Size::guides)], force_reversed[at_least_one(Size::contacts)];
+  };
+
+  void begin(const State& state, Next& next) const noexcept {
+    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+      next.mode[g] = state.mode[g];
+      next.slip_reversed[g] = false;
+    });
+    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD {
+      next.sign[c] = state.sign[c];
+      next.force_reversed[c] = false;
+    });
+  }
+
+  /// next into state; the number of events that the step went over.
+  int finish(const Next& next, State& state) const noexcept {
+    int events = 0;
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      sum += (state.q[j] - state.q[j]) + (state.v[j] - state.v[j]);
+      state.q[j] = next.q[j];
+      state.v[j] = next.v[j];
     });
-    for_each<Source, Size::inputs>(source.scene.inputs, [&](int i) SLIDEWAY_FOLD {
-      const Input& in = inputs.input[i];
-      sum += (in.value - in.value) + (in.rate - in.rate) + (in.acceleration - in.acceleration);
+    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+      state.mode[g] = next.mode[g];
+      events += next.slip_reversed[g] ? 1 : 0;
     });
+    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD {
+      state.sign[c] = next.sign[c];
+      events += next.force_reversed[c] ? 1 : 0;
+    });
+    return events;
+  }
+
+  /// A sum of finite numbers far from overflow is finite, and one that is not finite makes it so.
+  bool finite(const double* q, const double* v) const noexcept {
+    double sum = 0;
+    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD { sum += q[j] + v[j]; });
     return detail::finite(sum);
   }
 
+  bool finite(const State& state, const Inputs& inputs) const noexcept {
+    double sum = state.start;
+    for (int i = 0; i < source.scene.inputs; ++i) {
+      sum += inputs.input[i].value + inputs.input[i].rate + inputs.input[i].acceleration;
+    }
+    return detail::finite(sum) && finite(state.q, state.v);
+  }
+
   /// accelerate(), with mode and sign of `at` as guesses and answers.
-  Status evaluate(double t, double tau, const double* q, const double* v, const Inputs& inputs, State& at, Reaction& r,
+  Status evaluate(double t, double tau, const double* q, const double* v, const Inputs& inputs, Next& at, Reaction& r,
                   Report& report) const noexcept {
     return accelerate(source, t, tau, q, v, inputs, Solving{gains, hlcp, tau == 0}, at.mode, at.sign, r, report);
   }
 
-  /// Marks what has another slip direction or contact sign than before the step.
-  void mark_events(const State& before, const State& now, bool* reversed) const noexcept {
-    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-      reversed[g] = reversed[g] || before.mode[g] * now.mode[g] < 0;
-    });
+  /// The same within a step: its share of the energies, and what has reversed.
+  Status stage(const State& before, double t, double tau, double weight, const double* q, const double* v,
+               const Inputs& inputs, Next& next, Reaction& r, Report& report) const noexcept {
+    const Status status = evaluate(t + tau, tau, q, v, inputs, next, r, report);
+    report.energy.work += weight * r.power.work;
+    report.energy.dissipated += weight * r.power.dissipated;
+    report.energy.constraint_work += weight * r.power.constraint_work;
+    for_each<Source, Size::guides>(
+        source.scene.guides, [&](int g) SLIDEWAY_FOLD { next.slip_reversed[g] |= before.mode[g] * next.mode[g] < 0; });
     for_each<Source, Size::contacts>(source.tables.rough, [&](int m) SLIDEWAY_FOLD {
       const int c = source.tables.rough_contact[m];
-      reversed[Size::guides + c] = reversed[Size::guides + c] || before.sign[c] * now.sign[c] < 0;
+      next.force_reversed[c] |= before.sign[c] * next.sign[c] < 0;
     });
+    return status;
   }
 
-  static constexpr int n_marks = at_least_one(Size::guides + Size::contacts);
-
-  int count_events(const bool* reversed) const noexcept {
-    int count = 0;
-    for (int m = 0; m < Size::guides + Size::contacts; ++m) count += reversed[m] ? 1 : 0;
-    return count;
-  }
-
-  static void add(EnergyFlow& sum, double weight, const EnergyFlow& power) noexcept {
-    sum.work += weight * power.work;
-    sum.dissipated += weight * power.dissipated;
-    sum.constraint_work += weight * power.constraint_work;
-  }
-
-  Status step_rk4(State& next, const Inputs& inputs, Report& report) const noexcept {
+  /// With a_i the accelerations of the four stages: v + h/6 (a1 + 2 a2 + 2 a3 + a4), and since the stages' speeds are
+  /// v, v + h/2 a1, v + h/2 a2, v + h a3, q + h v + h^2/6 (a1 + a2 + a3).
+  Status step_rk4(const State& state, double t, double h, const Inputs& inputs, Next& next,
+                  Report& report) const noexcept {
     constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
-    const State before = next;
-    const double h = next.dt, t = next.time();
-    double q[n], v[n], q_sum[n] = {}, v_sum[n] = {};
-    bool reversed[n_marks] = {};
+    double q[n], v[n], sum[n], weighted_sum[n];
     Reaction r;
-    for (int stage = 0; stage < 4; ++stage) {
-      const double tau = node[stage] * h;
+    for (int k = 0; k < 4; ++k) {
+      const double tau = node[k] * h;
       for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        const double slope_q = stage == 0 ? 0 : v[j], slope_v = stage == 0 ? 0 : r.acceleration[j];
-        q[j] = before.q[j] + tau * slope_q;
-        v[j] = before.v[j] + tau * slope_v;
+        q[j] = k == 0 ? state.q[j] : state.q[j] + tau * v[j];
+        v[j] = k == 0 ? state.v[j] : state.v[j] + tau * r.acceleration[j];
       });
-      const Status status = evaluate(t + tau, tau, q, v, inputs, next, r, report);
+      const Status status = stage(state, t, tau, weight[k] * (h / 6), q, v, inputs, next, r, report);
       if (status != Status::ok) return status;
       for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        q_sum[j] += weight[stage] * v[j];
-        v_sum[j] += weight[stage] * r.acceleration[j];
+        const double a = r.acceleration[j];
+        weighted_sum[j] = k == 0 ? a : weighted_sum[j] + weight[k] * a;
+        if (k < 3) sum[j] = k == 0 ? a : sum[j] + a;
       });
-      add(report.energy, weight[stage] * (h / 6), r.power);
-      mark_events(before, next, reversed);
     }
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      next.q[j] = before.q[j] + h / 6 * q_sum[j];
-      next.v[j] = before.v[j] + h / 6 * v_sum[j];
+      next.q[j] = state.q[j] + h * (state.v[j] + h / 6 * sum[j]);
+      next.v[j] = state.v[j] + h / 6 * weighted_sum[j];
     });
-    report.unlocated_events = count_events(reversed);
     return Status::ok;
   }
 
-  Status step_euler(State& next, const Inputs& inputs, Report& report) const noexcept {
-    const State before = next;
-    const double h = next.dt;
-    bool reversed[n_marks] = {};
+  Status step_euler(const State& state, double t, double h, const Inputs& inputs, Next& next,
+                    Report& report) const noexcept {
     Reaction r;
-    const Status status = evaluate(next.time(), 0, before.q, before.v, inputs, next, r, report);
+    const Status status = stage(state, t, 0, h, state.q, state.v, inputs, next, r, report);
     if (status != Status::ok) return status;
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      next.v[j] = before.v[j] + h * r.acceleration[j];
-      next.q[j] = before.q[j] + h * next.v[j];
+      next.v[j] = state.v[j] + h * r.acceleration[j];
+      next.q[j] = state.q[j] + h * next.v[j];
     });
-    add(report.energy, h, r.power);
-    mark_events(before, next, reversed);
-    report.unlocated_events = count_events(reversed);
     return Status::ok;
   }
 
   /// Reactions at the start, middle and end of the step, for Simpson's rule of the energies.
-  Status step_kinematic(State& next, const Inputs& inputs, Report& report) const noexcept {
+  Status step_kinematic(const State& state, double t, double h, const Inputs& inputs, Next& next,
+                        Report& report) const noexcept {
     if (!fully_driven(source)) return Status::invalid_input;
     constexpr double weight[3] = {1, 4, 1};
-    const State before = next;
-    const double h = next.dt, t = next.time();
-    bool reversed[n_marks] = {};
     Reaction r;
-    for (int stage = 0; stage < 3; ++stage) {
-      const double tau = 0.5 * stage * h;
-      if (stage > 0) {
-        for (int j = 0; j < source.tables.coordinates; ++j) next.q[j] += 0.5 * h * next.v[j];
+    for (int k = 0; k < 3; ++k) {
+      const double tau = 0.5 * k * h;
+      for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
+        next.q[j] = k == 0 ? state.q[j] : next.q[j] + 0.5 * h * next.v[j];
+        if (k == 0) next.v[j] = state.v[j];
+      });
+      if (k > 0) {
         const Status placed = slideway::project(source, t + tau, tau, inputs, next.q, next.v);
         if (placed != Status::ok) return placed;
       }
-      const Status status = evaluate(t + tau, tau, next.q, next.v, inputs, next, r, report);
+      const Status status = stage(state, t, tau, weight[k] * (h / 6), next.q, next.v, inputs, next, r, report);
       if (status != Status::ok) return status;
-      add(report.energy, weight[stage] * (h / 6), r.power);
-      mark_events(before, next, reversed);
     }
-    report.unlocated_events = count_events(reversed);
     return Status::ok;
   }
 };

@@ -326,7 +326,8 @@ SLIDEWAY_INLINE constexpr void for_each(int count, F&& f) noexcept {
   if constexpr (Source::folds && Capacity <= fold_limit) {
     detail::fold_up(count, f, std::make_integer_sequence<int, Capacity>{});
   } else if constexpr (Capacity > 0) {
-    for (int i = 0; i < (count < Capacity ? count : Capacity); ++i) f(i);
+    const int end = count < Capacity ? count : Capacity;
+    for (int i = 0; i < end; ++i) f(i);
   }
 }
 
@@ -336,7 +337,8 @@ SLIDEWAY_INLINE constexpr void for_each_down(int count, F&& f) noexcept {
   if constexpr (Source::folds && Capacity <= fold_limit) {
     detail::fold_down<Capacity>(count, f, std::make_integer_sequence<int, Capacity>{});
   } else if constexpr (Capacity > 0) {
-    for (int i = (count < Capacity ? count : Capacity) - 1; i >= 0; --i) f(i);
+    const int end = count < Capacity ? count : Capacity;
+    for (int i = end - 1; i >= 0; --i) f(i);
   }
 }
 
