@@ -300,4 +300,24 @@ SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, c
   return independent;
 }
 
+/// Are the rough contacts' rows independent? Cholesky's pivots of S are the squared distances of each row from the span
+/// of those before it; formed with a relative error of n eps, they say nothing below that. Asked when the HLCP has no
+/// single answer: redundant contacts are then the reason. Cost: n^3 / 6.
+template <int Capacity>
+inline bool independent_contacts(const Hlcp<Capacity>& hlcp, int n) noexcept {
+  double S[Capacity][Capacity];
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) S[i][j] = 0.5 * (hlcp.plus[i][j] + hlcp.minus[i][j]);
+  }
+  for (int k = 0; k < n; ++k) {
+    const double whole = 0.5 * (hlcp.plus[k][k] + hlcp.minus[k][k]);
+    if (!(S[k][k] > 8 * detail::epsilon * n * whole)) return false;
+    for (int i = k + 1; i < n; ++i) {
+      const double ratio = S[i][k] / S[k][k];
+      for (int j = k + 1; j <= i; ++j) S[i][j] -= ratio * S[j][k];
+    }
+  }
+  return true;
+}
+
 }  // namespace slideway

@@ -225,6 +225,8 @@ class BasicStepper {
     constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
     double q[n], v[n], sum[n], weighted_sum[n];
     Reaction r;
+    for_each<Source, Size::coordinates>(source.tables.coordinates,
+                                        [&](int j) SLIDEWAY_FOLD { sum[j] = weighted_sum[j] = 0; });
     for (int k = 0; k < 4; ++k) {
       const double tau = node[k] * h;
       for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
@@ -234,9 +236,8 @@ class BasicStepper {
       const Status status = stage(state, t, tau, weight[k] * (h / 6), q, v, inputs, next, r, report);
       if (status != Status::ok) return status;
       for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        const double a = r.acceleration[j];
-        weighted_sum[j] = k == 0 ? a : weighted_sum[j] + weight[k] * a;
-        if (k < 3) sum[j] = k == 0 ? a : sum[j] + a;
+        weighted_sum[j] += weight[k] * r.acceleration[j];
+        if (k < 3) sum[j] += r.acceleration[j];
       });
     }
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
