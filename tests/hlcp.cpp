@@ -803,7 +803,7 @@ TEST(Hlcp, KeepsAllDigitsAcrossMassRatios) {
 // ---- orders and the matrix border
 
 TEST(Hlcp, SolvesOrdersZeroToThirtyTwo) {
-  Hlcp<32> problem;
+  Hlcp<32> problem = {};
   HlcpSolution<32> solution = start<32>(0x5555);
   for (int n : {-1, 33}) {
     slideway::solve(problem, n, solution);
