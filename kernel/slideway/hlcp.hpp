@@ -20,23 +20,29 @@ namespace slideway {
 
 namespace hlcp_detail {
 
+inline constexpr Word infinite = Word{2047} << 52;
+
+/// Whether the magnitude with these bits is in [low, high], both as bits.
+inline bool is_within(Word value, Word low, Word high) noexcept { return (value & ~sign_bit) - low <= high - low; }
+
 /// n = 1: a quotient. The W-property is that A+ and A- have one sign, and then b decides the sign of x.
 template <int Capacity>
 inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
-  const double p = problem.plus[0][0];
-  const double m = problem.minus[0][0];
+  const Word p = bits(problem.plus[0][0]);
+  const Word m = bits(problem.minus[0][0]);
   const double b = problem.b[0];
-  const bool usual = sizable(std::fabs(p)) & sizable(std::fabs(m)) & (sizable(std::fabs(b)) | (b == 0.0)) &
-                     (((bits(p) ^ bits(m)) >> 63) == 0);
+  const Word negative = Word{0} - ((p ^ bits(b)) >> 63);
+  const double x = b / real(p ^ ((p ^ m) & negative)) + 0.0;
+  // One sign, neither 0 nor infinite nor NaN; x normal, so that the quotient is correctly rounded, or exactly 0.
+  const bool usual = ((p ^ m) >> 63) == 0 && is_within(p, 1, infinite - 1) && is_within(m, 1, infinite - 1) &&
+                     (is_within(bits(x), bits(0x1p-1022), infinite - 1) || b == 0.0);
   if (__builtin_expect(!usual, 0)) return solve_with_care(problem, 1, solution, options, 0);
-  const bool positive = ((bits(p) ^ bits(b)) >> 63) == 0;
-  const double x = b / either(positive, p, m) + 0.0;
   solution.x[0] = x;
   solution.sign[0] = static_cast<signed char>(x < 0.0 ? -1 : 1);
   solution.status = Status::ok;
   solution.uniqueness = Uniqueness::certified;
   solution.solves = 1;
-  solution.residual = 0x1p-53;  // the quotient is correctly rounded
+  solution.residual = 0x1p-53;
 }
 
 /// All ones for the sign -1, else zero.
@@ -50,17 +56,15 @@ struct PairTrial {
   bool accurate;  // as check()
 };
 
-/// Solves W x = b for n = 2 and checks it: the same operations as solve_two(), clear() and check() in two lanes.
+/// Solves W x = b for n = 2 and checks it, with the operations of solve_two(), clear() and check() (that here the sum
+/// of both ratios has to be within the limit only sends more to the careful way, and not past NaN).
 template <int Capacity>
-inline PairTrial try_pair(const Hlcp<Capacity>& problem, Word negative0, Word negative1) noexcept {
+inline PairTrial try_pair(const Hlcp<Capacity>& problem, Pair sizes, Word negative0, Word negative1) noexcept {
   const PairBits mask = {static_cast<long long>(negative0), static_cast<long long>(negative1)};
-  const Pair row0 = choose(load(problem.plus[0]), load(problem.minus[0]), mask);
-  const Pair row1 = choose(load(problem.plus[1]), load(problem.minus[1]), mask);
-  const Pair b = load(problem.b);
-  const double w[2][2] = {{row0[0], row0[1]}, {row1[0], row1[1]}};
-  const double det = w[0][0] * w[1][1] - w[1][0] * w[0][1];
-  const Two two = solve_two(w, row_size(problem, 0), row_size(problem, 1), det, b[0], b[1]);
-  const Pair x = {two.x0, two.x1};
+  const Pair row0 = choose(gather(problem.plus[0]), gather(problem.minus[0]), mask);
+  const Pair row1 = choose(gather(problem.plus[1]), gather(problem.minus[1]), mask);
+  const Pair b = gather(problem.b);
+  const Pair x = solve_two(row0, row1, sizes, b);
   const Pair along = (Pair)((PairBits)x ^ (mask & sign_bits));
   const Pair size = magnitude(x);
   const double least = along[0] < along[1] ? along[0] : along[1];
@@ -73,18 +77,17 @@ inline PairTrial try_pair(const Hlcp<Capacity>& problem, Word negative0, Word ne
   const Pair ratio = magnitude((first + second) - b) / scale;
   const double worst = ratio[0] > ratio[1] ? ratio[0] : ratio[1];
   const double lowest = scale[0] < scale[1] ? scale[0] : scale[1];
-  // A ratio that is no number makes the sum of both none, and the comparison false.
-  const bool good = worst <= residual_limit(2) && ratio[0] + ratio[1] <= 1.0 && lowest >= 0x1p-900;
-  return {x, worst, least > tie_window * largest, good};
+  return {x, worst, least > tie_window * largest, ratio[0] + ratio[1] <= residual_limit(2) && lowest >= 0x1p-900};
 }
 
-/// Whether the four determinants of W(s) have one sign and at least 2^-19 times the product of the row sizes.
+/// Whether the four determinants of W(s) have one sign and exceed 2^-19 times the product of the row sizes. False for
+/// what is not finite, and where products underflow.
 template <int Capacity>
-inline bool pair_has_w_property(const Hlcp<Capacity>& problem, Pair size) noexcept {
-  const Pair p0 = load(problem.plus[0]);
-  const Pair p1 = load(problem.plus[1]);
-  const Pair m0 = load(problem.minus[0]);
-  const Pair m1 = load(problem.minus[1]);
+inline bool pair_has_w_property(const Hlcp<Capacity>& problem, Pair sizes) noexcept {
+  const Pair p0 = gather(problem.plus[0]);
+  const Pair p1 = gather(problem.plus[1]);
+  const Pair m0 = gather(problem.minus[0]);
+  const Pair m1 = gather(problem.minus[1]);
   const Pair pp = p0 * Pair{p1[1], p1[0]};
   const Pair mm = m0 * Pair{m1[1], m1[0]};
   const Pair pm = Pair{p0[0], m0[1]} * Pair{m1[1], p1[0]};
@@ -94,8 +97,10 @@ inline bool pair_has_w_property(const Hlcp<Capacity>& problem, Pair size) noexce
   const long long flip = ((PairBits)same)[0] & static_cast<long long>(sign_bit);
   const Pair a = (Pair)((PairBits)same ^ PairBits{flip, flip});
   const Pair c = (Pair)((PairBits)mixed ^ PairBits{flip, flip});
-  const Pair low = {a[0] < c[0] ? a[0] : c[0], a[1] < c[1] ? a[1] : c[1]};
-  return (low[0] < low[1] ? low[0] : low[1]) > 0x1p-19 * (size[0] * size[1]);
+  const double low0 = a[0] < c[0] ? a[0] : c[0];
+  const double low1 = a[1] < c[1] ? a[1] : c[1];
+  const double margin = 0x1p-19 * (sizes[0] * sizes[1]);
+  return low0 > margin && low1 > margin && margin >= 0x1p-900;
 }
 
 template <int Capacity>
@@ -117,8 +122,8 @@ template <int Capacity>
                                         HlcpOptions options) noexcept {
   Word negative[2] = {mask_of(solution.sign[0]), mask_of(solution.sign[1])};
   for (int solves = 1; solves <= 4; ++solves) {
-    const PairTrial trial = try_pair(problem, negative[0], negative[1]);
-    if (trial.x[0] == 0.0 && trial.x[1] == 0.0) return accept_pair(solution, Pair{0.0, 0.0}, 0, 0, solves, 0.0);
+    const PairTrial trial = try_pair(problem, row_sizes(problem), negative[0], negative[1]);
+    if (problem.b[0] == 0.0 && problem.b[1] == 0.0) return accept_pair(solution, Pair{0.0, 0.0}, 0, 0, solves, 0.0);
     if (trial.clear) {
       if (!trial.accurate) break;
       return accept_pair(solution, trial.x, negative[0], negative[1], solves, trial.residual);
@@ -136,10 +141,9 @@ template <int Capacity>
 inline void solve_pair(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
   const Word negative0 = mask_of(solution.sign[0]);
   const Word negative1 = mask_of(solution.sign[1]);
-  const PairTrial trial = try_pair(problem, negative0, negative1);
-  const Pair size = {row_size(problem, 0), row_size(problem, 1)};
-  const bool usual = pair_has_w_property(problem, size) &&
-                     (sizable(size[0]) & sizable(size[1]) & bounded(problem.b[0]) & bounded(problem.b[1])) != 0;
+  const Pair sizes = row_sizes(problem);
+  const PairTrial trial = try_pair(problem, sizes, negative0, negative1);
+  const bool usual = pair_has_w_property(problem, sizes);
   if (__builtin_expect(!usual, 0)) return solve_with_care(problem, 2, solution, options, 0);
   if (__builtin_expect(!(trial.clear && trial.accurate), 0)) return solve_pair_again(problem, solution, options);
   accept_pair(solution, trial.x, negative0, negative1, 1, trial.residual);
@@ -206,7 +210,7 @@ auto solve_hlcp(const Eigen::MatrixBase<Plus>& a_plus, const Eigen::MatrixBase<M
   const bool agree =
       n >= 0 && n <= capacity && a_plus.rows() == n && a_plus.cols() == n && a_minus.rows() == n && a_minus.cols() == n;
   const int order = agree ? static_cast<int>(n) : 0;
-  Hlcp<capacity> problem;
+  Hlcp<capacity> problem = {};
   HlcpSolution<capacity> solution = {};
   for (int i = 0; i < order; ++i) {
     for (int j = 0; j < order; ++j) {
@@ -216,11 +220,12 @@ auto solve_hlcp(const Eigen::MatrixBase<Plus>& a_plus, const Eigen::MatrixBase<M
     problem.b[i] = b.derived().coeff(i);
     solution.sign[i] = static_cast<signed char>(signs != nullptr && signs[i] == -1 ? -1 : 1);
   }
-  if constexpr (rows >= 0)
+  if (!agree)
+    hlcp_detail::refuse(solution, Status::invalid_input, 0);
+  else if constexpr (rows >= 0)
     solve(problem, std::integral_constant<int, rows>{}, solution, options);
   else
     solve(problem, order, solution, options);
-  if (!agree) hlcp_detail::refuse(solution, Status::invalid_input, 0);
   result.x.resize(order);
   for (int k = 0; k < order; ++k) result.x.coeffRef(k) = solution.status == Status::ok ? solution.x[k] : 0.0;
   std::memcpy(result.sign, solution.sign, sizeof result.sign);

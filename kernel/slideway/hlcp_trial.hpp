@@ -126,28 +126,27 @@ inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* si
     minus[j / 2] =
         PairBits{-static_cast<long long>(signs[j] == -1), j + 1 < n ? -static_cast<long long>(signs[j + 1] == -1) : 0};
   unsigned good = 1;
-  each(
-      n, [&](int i) __attribute__((always_inline)) {
-        Pair entries = {0.0, 0.0};
-        Pair spread = {0.0, 0.0};
-        for (int j = 0; j < n; j += 2) {
-          const bool last = j + 1 == n;
-          const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
-          const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
-          const Pair w = choose(p, m, minus[j / 2]);
-          store(&trial.w[i][j], w);
-          store(&trial.lu[i][j], w);
-          entries += magnitude(w);
-          spread += magnitude(p - m);
-        }
-        const double perturbation = spread[0] + spread[1];
-        const double size = perturbation + (entries[0] + entries[1]);
-        good = good & sizable(size) & bounded(problem.b[i]);
-        trial.size[i] = size;
-        trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
-        store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
-        trial.row[i] = i;
-      });
+  for (int i = 0; i < n; ++i) {
+    Pair entries = {0.0, 0.0};
+    Pair spread = {0.0, 0.0};
+    for (int j = 0; j < n; j += 2) {
+      const bool last = j + 1 == n;
+      const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
+      const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
+      const Pair w = choose(p, m, minus[j / 2]);
+      store(&trial.w[i][j], w);
+      store(&trial.lu[i][j], w);
+      entries += magnitude(w);
+      spread += magnitude(p - m);
+    }
+    const double perturbation = spread[0] + spread[1];
+    const double size = perturbation + (entries[0] + entries[1]);
+    good = good & sizable(size) & bounded(problem.b[i]);
+    trial.size[i] = size;
+    trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
+    store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
+    trial.row[i] = i;
+  }
   return good != 0;
 }
 
@@ -183,23 +182,23 @@ inline void exchange(Trial<Capacity>& trial, int k, int p, Count n) noexcept {
 template <int Capacity, class Count>
 inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
   Word least = bits(4.0);
-  each(
-      n, [&](int k) __attribute__((always_inline)) {
-        const Word best = pivot_in(trial, k, n);
-        const int p = 31 - static_cast<int>(best & 31);
-        least = best < least ? best : least;
-        if (p != k) exchange(trial, k, p, n);
-        const double inverse = 1.0 / trial.lu[k][k];
-        trial.inverse[k] = inverse;
-        const Pair side = load(trial.side[k]);
-        for (int i = k + 1; i < n; ++i) {
-          const double l = trial.lu[i][k] * inverse;
-          for (int j = (k + 1) & ~1; j < n; j += 2)
-            store(&trial.lu[i][j], load(&trial.lu[i][j]) - Pair{l, l} * load(&trial.lu[k][j]));
-          trial.lu[i][k] = l;
-          store(trial.side[i], load(trial.side[i]) - comparison(l) * side);
-        }
-      });
+  const auto pivot_step = [&](int k) __attribute__((always_inline)) {
+    const Word best = pivot_in(trial, k, n);
+    const int p = 31 - static_cast<int>(best & 31);
+    least = best < least ? best : least;
+    if (p != k) exchange(trial, k, p, n);
+    const double inverse = 1.0 / trial.lu[k][k];
+    trial.inverse[k] = inverse;
+    const Pair side = load(trial.side[k]);
+    for (int i = k + 1; i < n; ++i) {
+      const double l = trial.lu[i][k] * inverse;
+      for (int j = (k + 1) & ~1; j < n; j += 2)
+        store(&trial.lu[i][j], load(&trial.lu[i][j]) - Pair{l, l} * load(&trial.lu[k][j]));
+      trial.lu[i][k] = l;
+      store(trial.side[i], load(trial.side[i]) - comparison(l) * side);
+    }
+  };
+  each(n, pivot_step);
   return real(least & ~Word{31});
 }
 
@@ -208,16 +207,16 @@ template <int Capacity, class Count>
 inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
   double reach = 0.0;
   trial.x[Trial<Capacity>::stride - 1] = 0.0;
-  each(
-      n, [&](int solved) __attribute__((always_inline)) {
-        const int j = n - 1 - solved;
-        const double inverse = trial.inverse[j];
-        const Pair value = load(trial.side[j]) * Pair{inverse, std::fabs(inverse)};
-        store(trial.side[j], value);
-        trial.x[j] = value[0];
-        reach = value[1] > reach ? value[1] : reach;
-        for (int i = 0; i < j; ++i) store(trial.side[i], load(trial.side[i]) - comparison(trial.lu[i][j]) * value);
-      });
+  const auto back_step = [&](int solved) __attribute__((always_inline)) {
+    const int j = n - 1 - solved;
+    const double inverse = trial.inverse[j];
+    const Pair value = load(trial.side[j]) * Pair{inverse, std::fabs(inverse)};
+    store(trial.side[j], value);
+    trial.x[j] = value[0];
+    reach = value[1] > reach ? value[1] : reach;
+    for (int i = 0; i < j; ++i) store(trial.side[i], load(trial.side[i]) - comparison(trial.lu[i][j]) * value);
+  };
+  each(n, back_step);
   trial.reach = reach;
 }
 
@@ -235,23 +234,22 @@ inline void check(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial
   const double limit = residual_limit(n);
   double worst = 0.0;
   bool good = true;
-  each(
-      n, [&](int i) __attribute__((always_inline)) {
-        Pair sum = {0.0, 0.0};
-        Pair size = {0.0, 0.0};
-        for (int j = 0; j < n; j += 2) {
-          const Pair term = load(&trial.w[i][j]) * gather(&trial.x[j]);
-          sum += term;
-          size += magnitude(term);
-        }
-        const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
-        const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
-        const bool lost = !(scale >= 0x1p-900);
-        if (lost && vanishes(problem, trial, i, n)) return;
-        const double ratio = miss / scale;
-        good = good & !lost & (ratio <= limit);
-        worst = ratio > worst ? ratio : worst;
-      });
+  for (int i = 0; i < n; ++i) {
+    Pair sum = {0.0, 0.0};
+    Pair size = {0.0, 0.0};
+    for (int j = 0; j < n; j += 2) {
+      const Pair term = load(&trial.w[i][j]) * gather(&trial.x[j]);
+      sum += term;
+      size += magnitude(term);
+    }
+    const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
+    const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
+    const bool lost = !(scale >= 0x1p-900);
+    if (lost && vanishes(problem, trial, i, n)) continue;
+    const double ratio = miss / scale;
+    good = good & !lost & (ratio <= limit);
+    worst = ratio > worst ? ratio : worst;
+  }
   trial.residual = worst;
   trial.accurate = good;
 }
@@ -313,28 +311,28 @@ inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
 
 /// What the two-by-two formula needs beside W: the row sizes |a+_i0| + |a+_i1| + |a-_i0| + |a-_i1|.
 template <int Capacity>
-inline double row_size(const Hlcp<Capacity>& problem, int i) noexcept {
-  return (std::fabs(problem.plus[i][0]) + std::fabs(problem.minus[i][0])) +
-         (std::fabs(problem.plus[i][1]) + std::fabs(problem.minus[i][1]));
+inline Pair row_sizes(const Hlcp<Capacity>& problem) noexcept {
+  const Pair upper = magnitude(gather(problem.plus[0])) + magnitude(gather(problem.minus[0]));
+  const Pair lower = magnitude(gather(problem.plus[1])) + magnitude(gather(problem.minus[1]));
+  return Pair{upper[0], lower[0]} + Pair{upper[1], lower[1]};
 }
-
-struct Two {
-  double x0, x1;
-};
 
 inline double either(bool first, double a, double b) noexcept {
   const Word mask = Word{0} - static_cast<Word>(first);
   return real((bits(a) & mask) | (bits(b) & ~mask));
 }
 
-/// w x = b for n = 2 with det = det(w): x1 by Cramer's rule, x0 from the row with the larger weighted entry. As stable
-/// as elimination with that pivot (numerator and determinant are its Schur complements times the pivot), with one
-/// division less in the chain.
-inline Two solve_two(const double (&w)[2][2], double size0, double size1, double det, double b0, double b1) noexcept {
-  const double x1 = (w[0][0] * b1 - w[1][0] * b0) / det;
-  const bool first = bits(std::fabs(w[0][0]) * size1) >= bits(std::fabs(w[1][0]) * size0);
-  const double rest = either(first, b0, b1) - either(first, w[0][1], w[1][1]) * x1;
-  return {rest / either(first, w[0][0], w[1][0]), x1};
+/// (row0, row1) x = b for n = 2: x1 by Cramer's rule, x0 from the row with the larger weighted entry. As stable as
+/// elimination with that pivot (numerator and determinant are its Schur complements times the pivot), with one division
+/// less in the chain.
+inline Pair solve_two(Pair row0, Pair row1, Pair size, Pair b) noexcept {
+  const Pair pivot = {row0[0], row1[0]};
+  const Pair schur = Pair{pivot[0], pivot[0]} * Pair{b[1], row1[1]} - Pair{pivot[1], pivot[1]} * Pair{b[0], row0[1]};
+  const double x1 = schur[0] / schur[1];
+  const Pair weight = magnitude(pivot) * Pair{size[1], size[0]};
+  const bool first = bits(weight[0]) >= bits(weight[1]);
+  const double rest = either(first, b[0], b[1]) - either(first, row0[1], row1[1]) * x1;
+  return Pair{rest / either(first, pivot[0], pivot[1]), x1};
 }
 
 /// x += W^-1 rest for n = 1 and n = 2.
@@ -342,11 +340,10 @@ template <int Capacity>
 inline void correct_small(const Hlcp<Capacity>& problem, int n, const double* rest, Trial<Capacity>& trial) noexcept {
   if constexpr (Capacity >= 2) {
     if (n == 2) {
-      const double w[2][2] = {{trial.w[0][0], trial.w[0][1]}, {trial.w[1][0], trial.w[1][1]}};
-      const double det = w[0][0] * w[1][1] - w[1][0] * w[0][1];
-      const Two change = solve_two(w, row_size(problem, 0), row_size(problem, 1), det, rest[0], rest[1]);
-      trial.x[0] += change.x0;
-      trial.x[1] += change.x1;
+      const Pair b = {rest[0], rest[1]};
+      const Pair change = solve_two(load(trial.w[0]), load(trial.w[1]), row_sizes(problem), b);
+      trial.x[0] += change[0];
+      trial.x[1] += change[1];
       return;
     }
   }
@@ -408,22 +405,22 @@ template <int Capacity, class Count>
 inline double reach_of(const Trial<Capacity>& trial, Count n, const double* v, double* z) noexcept {
   alignas(16) double y[Trial<Capacity>::stride] = {};
   alignas(16) double w[Trial<Capacity>::stride] = {};
-  each(
-      n, [&](int i) __attribute__((always_inline)) {
-        Pair sum = {v[trial.row[i]], 0.0};
-        for (int k = 0; k < i; k += 2) sum += magnitude(load(&trial.lu[i][k])) * gather(&y[k]);
-        y[i] = sum[0] + sum[1];
-      });
+  const auto forward_row = [&](int i) __attribute__((always_inline)) {
+    Pair sum = {v[trial.row[i]], 0.0};
+    for (int k = 0; k < i; k += 2) sum += magnitude(load(&trial.lu[i][k])) * gather(&y[k]);
+    y[i] = sum[0] + sum[1];
+  };
+  each(n, forward_row);
   double largest = 0.0;
-  each(
-      n, [&](int solved) __attribute__((always_inline)) {
-        const int i = n - 1 - solved;
-        Pair sum = {y[i], 0.0};
-        for (int j = (i + 1) & ~1; j < n; j += 2) sum += magnitude(load(&trial.lu[i][j])) * gather(&w[j]);
-        w[i] = (sum[0] + sum[1]) * std::fabs(trial.inverse[i]);
-        z[i] = w[i];
-        largest = z[i] > largest ? z[i] : largest;
-      });
+  const auto backward_row = [&](int solved) __attribute__((always_inline)) {
+    const int i = n - 1 - solved;
+    Pair sum = {y[i], 0.0};
+    for (int j = (i + 1) & ~1; j < n; j += 2) sum += magnitude(load(&trial.lu[i][j])) * gather(&w[j]);
+    w[i] = (sum[0] + sum[1]) * std::fabs(trial.inverse[i]);
+    z[i] = w[i];
+    largest = z[i] > largest ? z[i] : largest;
+  };
+  each(n, backward_row);
   return largest;
 }
 
@@ -431,14 +428,13 @@ inline double reach_of(const Trial<Capacity>& trial, Count n, const double* v, d
 template <int Capacity, class Count>
 inline void perturb(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial, const double* u,
                     double* v) noexcept {
-  each(
-      n, [&](int i) __attribute__((always_inline)) {
-        Pair sum = {allowance * trial.size[i], 0.0};
-        for (int j = 0; j + 1 < n; j += 2)
-          sum += magnitude(load(&problem.plus[i][j]) - load(&problem.minus[i][j])) * gather(&u[j]);
-        if (n % 2 != 0) sum[1] += std::fabs(problem.plus[i][n - 1] - problem.minus[i][n - 1]) * u[n - 1];
-        v[i] = sum[0] + sum[1];
-      });
+  for (int i = 0; i < n; ++i) {
+    Pair sum = {allowance * trial.size[i], 0.0};
+    for (int j = 0; j + 1 < n; j += 2)
+      sum += magnitude(load(&problem.plus[i][j]) - load(&problem.minus[i][j])) * gather(&u[j]);
+    if (n % 2 != 0) sum[1] += std::fabs(problem.plus[i][n - 1] - problem.minus[i][n - 1]) * u[n - 1];
+    v[i] = sum[0] + sum[1];
+  }
 }
 
 /// Whether |W^-1| (|A+ - A-| + allowance) u < u for some u > 0, so that no matrix between A+ and A- is singular

@@ -8,10 +8,12 @@
 
 #if defined(__GNUC__)
 #define SLIDEWAY_INLINE inline __attribute__((always_inline))
-#define SLIDEWAY_FOLD __attribute__((always_inline))  // behind a lambda's parameters
+#define SLIDEWAY_FOLD __attribute__((always_inline))                                 // behind a lambda's parameters
+#define SLIDEWAY_ASSUME(condition) ((condition) ? void() : __builtin_unreachable())  // the counts of derived tables
 #else
 #define SLIDEWAY_INLINE inline
 #define SLIDEWAY_FOLD
+#define SLIDEWAY_ASSUME(condition) void()
 #endif
 
 namespace slideway {
@@ -326,8 +328,8 @@ SLIDEWAY_INLINE constexpr void for_each(int count, F&& f) noexcept {
   if constexpr (Source::folds && Capacity <= fold_limit) {
     detail::fold_up(count, f, std::make_integer_sequence<int, Capacity>{});
   } else if constexpr (Capacity > 0) {
-    const int end = count < Capacity ? count : Capacity;
-    for (int i = 0; i < end; ++i) f(i);
+    SLIDEWAY_ASSUME(count <= Capacity);
+    for (int i = 0; i < count; ++i) f(i);
   }
 }
 
@@ -337,8 +339,8 @@ SLIDEWAY_INLINE constexpr void for_each_down(int count, F&& f) noexcept {
   if constexpr (Source::folds && Capacity <= fold_limit) {
     detail::fold_down<Capacity>(count, f, std::make_integer_sequence<int, Capacity>{});
   } else if constexpr (Capacity > 0) {
-    const int end = count < Capacity ? count : Capacity;
-    for (int i = end - 1; i >= 0; --i) f(i);
+    SLIDEWAY_ASSUME(count <= Capacity);
+    for (int i = count - 1; i >= 0; --i) f(i);
   }
 }
 
