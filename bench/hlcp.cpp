@@ -26,11 +26,52 @@ using slideway::HlcpSolution;
 
 constexpr int problem_count = 64;
 
-/// What a solve costs when nothing is asked of it: LU with partial pivoting and the two triangular solves. It is
-/// written with the means of the kernel (rows in pairs, integer pivot keys, one division a pivot) but certifies
-/// nothing.
+/// LU with partial pivoting and the two triangular solves, certifying nothing, as one writes it: loops over a constant
+/// N.
 template <int N>
-struct PlainLu {
+struct LoopLu {
+  double lu[N][N];
+  double x[N];
+
+  bool solve(const double (&a)[N][N], const double (&b)[N]) {
+    double inverse[N];
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) lu[i][j] = a[i][j];
+      x[i] = b[i];
+    }
+    for (int k = 0; k < N; ++k) {
+      int p = k;
+      double best = std::fabs(lu[k][k]);
+      for (int i = k + 1; i < N; ++i)
+        if (std::fabs(lu[i][k]) > best) {
+          best = std::fabs(lu[i][k]);
+          p = i;
+        }
+      if (best == 0.0) return false;
+      if (p != k) {
+        for (int j = 0; j < N; ++j) std::swap(lu[k][j], lu[p][j]);
+        std::swap(x[k], x[p]);
+      }
+      inverse[k] = 1.0 / lu[k][k];
+      for (int i = k + 1; i < N; ++i) {
+        const double l = lu[i][k] * inverse[k];
+        lu[i][k] = l;
+        for (int j = k + 1; j < N; ++j) lu[i][j] -= l * lu[k][j];
+        x[i] -= l * x[k];
+      }
+    }
+    for (int i = N - 1; i >= 0; --i) {
+      for (int j = i + 1; j < N; ++j) x[i] -= lu[i][j] * x[j];
+      x[i] *= inverse[i];
+    }
+    return true;
+  }
+};
+
+/// The same with every means of the kernel: rows in aligned pairs, integer pivot keys, the outer loops written out by
+/// templates.
+template <int N>
+struct WrittenLu {
   static constexpr int stride = N + N % 2;
   alignas(16) double lu[N][stride];
   double x[N];
@@ -148,36 +189,43 @@ std::vector<Problem<N>> problems() {
 }
 
 /// Solves all problems. In a chain each waits for the one before, as the stages of a time step do: 2^-600 times its x
-/// is added to b, which changes no bit. Otherwise the processor may overlap them.
+/// is added to the matrices' first entries, which changes no bit. Otherwise the processor may overlap them.
 template <int N, bool Chain>
 [[gnu::noinline]] double kernel_sweep(std::vector<Problem<N>>& all) {
-  double last = 0.0;
+  double sum = 0.0;
+  double link = 0.0;
   for (Problem<N>& problem : all) {
-    if (Chain) problem.hlcp.b[0] += last * 0x1p-600;
+    if (Chain) {
+      problem.hlcp.plus[0][0] += link;
+      problem.hlcp.minus[0][0] += link;
+    }
     slideway::solve(problem.hlcp, std::integral_constant<int, N>{}, problem.solution);
-    last = problem.solution.x[0];
+    link = problem.solution.x[0] * 0x1p-600;
+    sum += problem.solution.x[0];
   }
-  return last;
+  return sum;
 }
 
-template <int N>
-[[gnu::noinline]] bool plain(const double (&w)[N][N], const double (&b)[N], PlainLu<N>& lu) {
+template <int N, class Lu>
+[[gnu::noinline]] bool plain(const double (&w)[N][N], const double (&b)[N], Lu& lu) {
   return lu.solve(w, b);
 }
 
-template <int N, bool Chain>
+template <int N, class Lu, bool Chain>
 [[gnu::noinline]] double lu_sweep(std::vector<Problem<N>>& all) {
-  double last = 0.0;
-  PlainLu<N> lu;
+  double sum = 0.0;
+  double link = 0.0;
+  Lu lu;
   for (Problem<N>& problem : all) {
-    if (Chain) problem.hlcp.b[0] += last * 0x1p-600;
+    if (Chain) problem.w[0][0] += link;
     if constexpr (N <= 2)
       lu.solve(problem.w, problem.hlcp.b);
     else
       plain(problem.w, problem.hlcp.b, lu);
-    last = lu.x[0];
+    link = lu.x[0] * 0x1p-600;
+    sum += lu.x[0];
   }
-  return last;
+  return sum;
 }
 
 template <class Sweep>
@@ -188,34 +236,35 @@ double nanoseconds(Sweep sweep, int repeats) {
   return elapsed.count() / repeats / problem_count;
 }
 
-/// The least time of many short runs, the two sides in turn: what other programs of the machine take is not counted.
+/// The least times of many short runs, the sides in turn: what other programs of the machine take is not counted.
 template <int N, bool Chain>
-double ratio(double& kernel, double& lu, std::vector<Problem<N>>& all) {
+void compare(const char* how, std::vector<Problem<N>>& all) {
   const int repeats = std::max(1, 1000 / (N * N * N / 8 + 10));
-  kernel = lu = HUGE_VAL;
+  double kernel = HUGE_VAL;
+  double loops = HUGE_VAL;
+  double written = HUGE_VAL;
   for (int round = 0; round < 2000; ++round) {
     kernel = std::min(kernel, nanoseconds([&] { return kernel_sweep<N, Chain>(all); }, repeats));
-    lu = std::min(lu, nanoseconds([&] { return lu_sweep<N, Chain>(all); }, repeats));
+    loops = std::min(loops, nanoseconds([&] { return lu_sweep<N, LoopLu<N>, Chain>(all); }, repeats));
+    written = std::min(written, nanoseconds([&] { return lu_sweep<N, WrittenLu<N>, Chain>(all); }, repeats));
   }
-  return kernel / lu;
+  std::printf("  %s: HLCP %7.1f ns, LU in loops %7.1f ns, written out %7.1f ns, ratios %.2f and %.2f\n", how, kernel,
+              loops, written, kernel / loops, kernel / written);
 }
 
 template <int N>
-void print_ratio(const char* bar) {
+void compare() {
   auto all = problems<N>();
-  double kernel = 0.0;
-  double lu = 0.0;
-  const double chained = ratio<N, true>(kernel, lu, all);
-  std::printf("n = %2d  in a chain: HLCP %7.1f ns  LU %7.1f ns  ratio %.2f (bar %s)", N, kernel, lu, chained, bar);
-  const double overlapping = ratio<N, false>(kernel, lu, all);
-  std::printf("  overlapping: HLCP %7.1f ns  LU %7.1f ns  ratio %.2f", kernel, lu, overlapping);
+  kernel_sweep<N, false>(all);
   int certified = 0;
   int once = 0;
   for (const auto& problem : all) {
     certified += problem.solution.uniqueness == slideway::Uniqueness::certified ? 1 : 0;
     once += problem.solution.solves == 1 ? 1 : 0;
   }
-  std::printf("  certified %d, one solve %d of %d\n", certified, once, problem_count);
+  std::printf("n = %d: of %d problems, %d with one solve, %d certified unique\n", N, problem_count, once, certified);
+  compare<N, true>("one after another", all);
+  compare<N, false>("overlapping      ", all);
 }
 
 template <int N>
@@ -223,7 +272,7 @@ int count(bool kernel) {
   auto all = problems<N>();
   double sum = 0.0;
   for (int round = 0; round < 1024 / problem_count; ++round)
-    sum += kernel ? kernel_sweep<N, false>(all) : lu_sweep<N, false>(all);
+    sum += kernel ? kernel_sweep<N, false>(all) : lu_sweep<N, WrittenLu<N>, false>(all);
   std::printf("%s n = %d: %d solves, sum %g\n", kernel ? "kernel" : "lu", N, 1024, sum);
   return 0;
 }
@@ -259,7 +308,7 @@ void kernel_benchmark(benchmark::State& state) {
 template <int N>
 void lu_benchmark(benchmark::State& state) {
   auto all = problems<N>();
-  for (auto _ : state) benchmark::DoNotOptimize(lu_sweep<N, true>(all));
+  for (auto _ : state) benchmark::DoNotOptimize(lu_sweep<N, LoopLu<N>, true>(all));
   state.SetItemsProcessed(state.iterations() * problem_count);
 }
 
@@ -279,12 +328,12 @@ BENCHMARK_TEMPLATE(lu_benchmark, 16);
 int main(int argc, char** argv) {
   if (argc == 4 && std::strcmp(argv[1], "--count") == 0) return count(argv[2], argv[3]);
   if (argc == 2 && std::strcmp(argv[1], "--ratio") == 0) {
-    print_ratio<1>("none");
-    print_ratio<2>("3.0");
-    print_ratio<3>("none");
-    print_ratio<4>("2.0");
-    print_ratio<8>("1.7");
-    print_ratio<16>("1.6");
+    compare<1>();
+    compare<2>();
+    compare<3>();
+    compare<4>();
+    compare<8>();
+    compare<16>();
     return 0;
   }
   benchmark::Initialize(&argc, argv);

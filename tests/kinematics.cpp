@@ -1,12 +1,12 @@
 // Kinematics and dynamics of random mechanisms against a second formulation: Cartesian coordinates of every body, all
-// constraints kept, time derivatives by Taylor arithmetic, the whole KKT system by Gauss with complete pivoting, contact
-// signs by trying all of them, long double. It has the frames and definitions of scene.hpp and none of the kernel's code.
+// constraints kept, time derivatives by Taylor arithmetic, the whole KKT system by Gauss with complete pivoting,
+// contact signs by trying all of them, long double. It has the frames and definitions of scene.hpp and none of the
+// kernel's code.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <random>
 #include <slideway/step.hpp>
 #include <vector>
@@ -202,8 +202,8 @@ Measures measure(const Scene& scene, const Poses<Jet>& poses) {
     m.pin.push_back(r.y);
   }
   for (int s = 0; s < scene.springs; ++s) {
-    const Vec<Jet> r = point(poses, scene.spring[s].a, scene.spring[s].a_at) -
-                       point(poses, scene.spring[s].b, scene.spring[s].b_at);
+    const Vec<Jet> r =
+        point(poses, scene.spring[s].a, scene.spring[s].a_at) - point(poses, scene.spring[s].b, scene.spring[s].b_at);
     m.spring.push_back(sqrt(r.x * r.x + r.y * r.y));
   }
   for (int l = 0; l < scene.loads; ++l) {
@@ -510,9 +510,9 @@ struct Mechanism {
   slideway::Inputs<Size> inputs;
 };
 
-/// A mechanism with joints of all kinds (the first of them drawn), two or three guides, at least one of them with friction
-/// up to `most_mu`, and some of everything else, in a random pose that misses its constraints and moves off them. Its
-/// constraints may be dependent.
+/// A mechanism with joints of all kinds (the first of them drawn), two or three guides, at least one of them with
+/// friction up to `most_mu`, and some of everything else, in a random pose that misses its constraints and moves off
+/// them. Its constraints may be dependent.
 Mechanism draw(Random& random, double most_mu) {
   Mechanism m;
   Scene& scene = m.scene;
@@ -607,8 +607,8 @@ Mechanism draw(Random& random, double most_mu) {
   return m;
 }
 
-/// Draws until the second formulation finds the constraints independent in every sign pattern and no pattern near a tie.
-/// Pivots lose at most 4 digits then, and contact forces have signs.
+/// Draws until the second formulation finds the constraints independent in every sign pattern and no pattern near a
+/// tie. Pivots lose at most 4 digits then, and contact forces have signs.
 Mechanism draw_sound(Random& random, double most_mu, Instant& truth) {
   for (int tries = 0; tries < 10000; ++tries) {
     const Mechanism m = draw(random, most_mu);
@@ -641,8 +641,8 @@ struct Comparison {
 
   void compare(const char* what, Real miss, Real size) {
     const double ratio = size > 0 ? static_cast<double>(miss / size) : 0;
-    // Relative to the group's largest. Measured: 2e-12 at worst; pivots over a range of 1e4 allow for 1e4 times 1e-15 and
-    // their products with each other's.
+    // Relative to the group's largest; the project's bar. Measured: 4e-14 at worst; a range of pivots of 1e4 turns the
+    // 1e-15 of the kernel's rows into 1e-11.
     EXPECT_LT(ratio, 1e-10) << what;
     worst = std::fmax(worst, ratio);
   }
@@ -652,14 +652,14 @@ void expect_agreement(const Stepper& stepper, const Mechanism& m, const Instant&
   Stepper::Reaction r;
   const Report report = stepper.reaction(m.state, m.inputs, r);
   ASSERT_EQ(report.status, Status::ok) << sentence(report.status);
-  if(getenv("DBG")) for (int g=0,c=0; g<m.scene.guides; ++g) { printf("g%d mu %g contacts %d slip %g %Lg fr %g %Lg:", g, m.scene.guide[g].mu, m.scene.guide[g].contacts, r.slip[g], truth.slip[g], r.friction[g], truth.friction[g]); for (int k=0;k<m.scene.guide[g].contacts;++k,++c) printf(" %g/%Lg", r.lambda[c], truth.lambda[c]); puts("");}
   EXPECT_NE(report.uniqueness, slideway::Uniqueness::refuted);
   comparison.group("q''", r.acceleration, truth.acceleration);
   comparison.group("slip", r.slip, truth.slip);
   Real force = 0;  // forces of the mechanism as a whole: a small one is a difference of large ones
   for (const Real f : truth.lambda) force = std::fmax(force, std::fabs(f));
   for (const Real f : truth.drive) force = std::fmax(force, std::fabs(f));
-  for (std::size_t c = 0; c < truth.lambda.size(); ++c) comparison.number("lambda", r.lambda[c], truth.lambda[c], force);
+  for (std::size_t c = 0; c < truth.lambda.size(); ++c)
+    comparison.number("lambda", r.lambda[c], truth.lambda[c], force);
   for (std::size_t g = 0; g < truth.friction.size(); ++g) {
     comparison.number("friction", r.friction[g], truth.friction[g], force);
   }
@@ -672,7 +672,8 @@ void expect_agreement(const Stepper& stepper, const Mechanism& m, const Instant&
   comparison.number("work", r.power.work, truth.work, power);
   comparison.number("dissipated", r.power.dissipated, truth.dissipated, power);
   comparison.number("constraint work", r.power.constraint_work, truth.constraint_work, power);
-  comparison.number("energy rate", r.power.work - r.power.dissipated + r.power.constraint_work, truth.energy_rate, power);
+  comparison.number("energy rate", r.power.work - r.power.dissipated + r.power.constraint_work, truth.energy_rate,
+                    power);
   comparison.number("drift", r.drift_position, truth.drift_position, truth.drift_position);
   comparison.number("drift rate", r.drift_velocity, truth.drift_velocity, truth.drift_velocity);
   comparison.number("kinetic energy", stepper.kinetic_energy(m.state), truth.kinetic, truth.kinetic);
@@ -683,7 +684,7 @@ void expect_agreement(const Stepper& stepper, const Mechanism& m, const Instant&
 TEST(Dynamics, AccelerationsForcesAndEnergiesOfRandomMechanismsAreRight) {
   Comparison comparison;
   int joints[4] = {}, laws[4] = {}, frictionless = 0, pairs = 0, pins = 0, moving_rails = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     Instant truth;
@@ -702,20 +703,19 @@ TEST(Dynamics, AccelerationsForcesAndEnergiesOfRandomMechanismsAreRight) {
     }
   }
   // The sample has what it is meant to have.
-  for (const int count : joints) EXPECT_GE(count, 40);
-  for (const int count : laws) EXPECT_GE(count, 10);
+  for (const int count : joints) EXPECT_GE(count, 30);
+  for (const int count : laws) EXPECT_GE(count, 5);
   EXPECT_GE(frictionless, 10);
   EXPECT_GE(pairs, 10);
-  EXPECT_GE(pins, 10);
-  EXPECT_GE(moving_rails, 40);
+  EXPECT_GE(pins, 5);
+  EXPECT_GE(moving_rails, 30);
   RecordProperty("worst", testing::PrintToString(comparison.worst));
-  std::printf("%g | %d %d %d %d | %d %d %d %d| %d %d %d %d\n", comparison.worst, joints[0], joints[1], joints[2], joints[3], laws[0], laws[1], laws[2], laws[3], frictionless, pairs, pins, moving_rails);
 }
 
 TEST(Dynamics, AsManySolutionsAsSignPatternsHold) {
   int seen[3] = {};
   Comparison comparison;
-  for (unsigned seed = 1; seed <= 150; ++seed) {
+  for (unsigned seed = 1; seed <= 80; ++seed) {
     SCOPED_TRACE(seed);
     Random random(1000 + seed);
     Instant truth;
@@ -731,10 +731,126 @@ TEST(Dynamics, AsManySolutionsAsSignPatternsHold) {
           << truth.solutions << " solutions, " << name(status);
     }
   }
-  std::printf("%d %d %d %g\n", seen[0], seen[1], seen[2], comparison.worst);
-  EXPECT_GE(seen[0], 3);
-  EXPECT_GE(seen[1], 50);
-  EXPECT_GE(seen[2], 3);
+  // The sample has what it is meant to have.
+  for (const int count : seen) EXPECT_GE(count, 10);
+  RecordProperty("none", seen[0]);
+  RecordProperty("one", seen[1]);
+  RecordProperty("several", seen[2]);
+  RecordProperty("worst", testing::PrintToString(comparison.worst));
+}
+
+// --- kinematics alone ------------------------------------------------------------------------------------------------
+
+/// f'(0) and f''(0) by central differences of order 6, step h = 2e-3: truncation h^6 f(8) / 560, 1e-13 for motions of
+/// 5 rad/s; rounding 1e-19 / h^2 times |f|, 3e-13 for |f| = 10.
+template <class F>
+std::array<Real, 2> derivatives(F f) {
+  const Real h = 2e-3L;
+  const Real f0 = f(Real{0});
+  Real first = 0, second = -f0 * 49 / 18;
+  const Real a[3] = {3.0L / 4, -3.0L / 20, 1.0L / 60}, b[3] = {3.0L / 2, -3.0L / 20, 1.0L / 90};
+  for (int k = 1; k <= 3; ++k) {
+    const Real plus = f(k * h), minus = f(-k * h);
+    first += a[k - 1] * (plus - minus);
+    second += b[k - 1] * (plus + minus);
+  }
+  return {first / h, second / (h * h)};
+}
+
+TEST(Kinematics, ContactsPinsAndTheirRowsAreTheDerivativesOfTheirPlaces) {
+  double worst = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const Mechanism m = draw(random, 0.3);
+    const Stepper stepper(m.scene);
+    const auto& table = stepper.source.tables;
+    double prescribed[Size::coordinates];  // accelerations of the driven coordinates; the others have none
+    for (int j = 0; j < Size::coordinates; ++j) {
+      prescribed[j] = random.between(-3, 3);
+      if (j >= table.coordinates || table.drive_of[j] == none) prescribed[j] = 0;
+    }
+    slideway::Kinematics<Size> k;
+    kinematics(stepper.source, m.state.q, m.state.v, prescribed, k);
+
+    const auto poses_at = [&](Real t) {
+      Real q[Size::coordinates];
+      for (int j = 0; j < Size::coordinates; ++j) q[j] = m.state.q[j] + t * (m.state.v[j] + t * prescribed[j] / 2);
+      return place(m.scene, q);
+    };
+    const auto moved = [&](int coordinate, Real by) {
+      Real q[Size::coordinates];
+      for (int j = 0; j < Size::coordinates; ++j) q[j] = m.state.q[j] + (j == coordinate ? by : 0);
+      return place(m.scene, q);
+    };
+    const auto agree = [&](const char* what, double ours, Real exact) {
+      const double miss = static_cast<double>(std::fabs(ours - exact) / std::fmax(Real{1}, std::fabs(exact)));
+      EXPECT_LT(miss, 1e-10) << what;  // m, m/s, m/s^2, beside values of 1 to 100; measured: 3e-13
+      worst = std::fmax(worst, miss);
+    };
+
+    for (int i = 0; i < m.scene.bodies; ++i) {
+      const Poses<Real> now = poses_at(0);
+      agree("origin", k.origin[i].x, now[i].o.x);
+      agree("origin", k.origin[i].y, now[i].o.y);
+      agree("turn", k.turn[i].c, std::cos(now[i].angle));
+      agree("turn", k.turn[i].s, std::sin(now[i].angle));
+      const auto x = derivatives([&](Real t) { return poses_at(t)[i].o.x; });
+      const auto y = derivatives([&](Real t) { return poses_at(t)[i].o.y; });
+      const auto angle = derivatives([&](Real t) { return poses_at(t)[i].angle; });
+      agree("velocity", k.velocity[i].x, x[0]);
+      agree("velocity", k.velocity[i].y, y[0]);
+      agree("known acceleration", k.known[i].x, x[1]);
+      agree("known acceleration", k.known[i].y, y[1]);
+      agree("rate", k.rate[i], angle[0]);
+      agree("known angular acceleration", k.known_alpha[i], angle[1]);
+    }
+    for (int g = 0; g < m.scene.guides; ++g) {
+      slideway::Sliding s;
+      sliding(stepper.source, k, g, s);
+      for (int c = 0; c < m.scene.guide[g].contacts; ++c) {
+        const auto off = derivatives([&](Real t) { return on_line(m.scene, poses_at(t), g, c).y; });
+        const auto along = derivatives([&](Real t) { return on_line(m.scene, poses_at(t), g, c).x; });
+        agree("Phi", s.Phi[c], on_line(m.scene, poses_at(0), g, c).y);
+        agree("Phi'", s.Phi_rate[c], off[0]);
+        agree("gamma", s.gamma[c], off[1]);
+        agree("slip", s.slip[c], along[0]);
+      }
+      double N[Size::coordinates] = {}, T[Size::coordinates] = {};
+      add_row(stepper.source, k, table.guide[g], s.place, s.n, N);
+      add_row(stepper.source, k, table.guide[g], s.place, s.t, T);
+      for (int f = 0; f < table.free; ++f) {
+        const int j = table.free_coordinate[f];
+        agree("N", N[f], derivatives([&](Real by) { return on_line(m.scene, moved(j, by), g, 0).y; })[0]);
+        agree("T", T[f], derivatives([&](Real by) { return on_line(m.scene, moved(j, by), g, 0).x; })[0]);
+      }
+    }
+    for (int p = 0; p < m.scene.pins; ++p) {
+      // The kernel's directions are the world's; the differences are taken in the frame of b and turned.
+      slideway::Meeting at;
+      meeting(stepper.source, k, p, at);
+      const Real angle = pose_of(poses_at(0), m.scene.pin[p].b).angle;
+      const auto x = derivatives([&](Real t) { return gap(m.scene, poses_at(t), p).x; });
+      const auto y = derivatives([&](Real t) { return gap(m.scene, poses_at(t), p).y; });
+      const Vec<Real> Phi = turned(gap(m.scene, poses_at(0), p), angle);
+      const Vec<Real> rate = turned(Vec<Real>{x[0], y[0]}, angle), gamma = turned(Vec<Real>{x[1], y[1]}, angle);
+      agree("pin's Phi", at.Phi.x, Phi.x);
+      agree("pin's Phi", at.Phi.y, Phi.y);
+      agree("pin's Phi'", at.rate.x, rate.x);
+      agree("pin's Phi'", at.rate.y, rate.y);
+      agree("pin's gamma", at.gamma.x, gamma.x);
+      agree("pin's gamma", at.gamma.y, gamma.y);
+      double row[Size::coordinates] = {};
+      add_row(stepper.source, k, table.pin[p], at.place, {1, 0}, row);
+      for (int f = 0; f < table.free; ++f) {
+        const int j = table.free_coordinate[f];
+        const Vec<Real> step{derivatives([&](Real by) { return gap(m.scene, moved(j, by), p).x; })[0],
+                             derivatives([&](Real by) { return gap(m.scene, moved(j, by), p).y; })[0]};
+        agree("pin's row", row[f], turned(step, angle).x);
+      }
+    }
+  }
+  RecordProperty("worst", testing::PrintToString(worst));
 }
 
 }  // namespace

@@ -156,8 +156,12 @@ template <int Capacity, class Count>
   Trial<Capacity> trial;
   if (attempt(problem, n, solution.sign, trial) && clear(trial.x, n, solution.sign)) {
     const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, n, trial);
-    if (proven || n > decidable)
-      return accept(solution, n, trial.x, proven ? Uniqueness::certified : Uniqueness::unproven, 1, trial.residual);
+    if (proven || n > decidable) {
+      for (int k = 0; k < n; ++k) solution.x[k] = trial.x[k] + 0.0;  // -0 becomes 0
+      for (int k = 0; k < n; ++k)
+        solution.sign[k] = static_cast<signed char>(solution.sign[k] == -1 && trial.x[k] != 0.0 ? -1 : 1);
+      return report(solution, Status::ok, proven ? Uniqueness::certified : Uniqueness::unproven, 1, trial.residual);
+    }
   }
   solve_with_care(problem, static_cast<int>(n), solution, options, 1);
 }

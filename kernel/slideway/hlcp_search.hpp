@@ -8,24 +8,27 @@
 namespace slideway::hlcp_detail {
 
 template <int Capacity>
-inline void refuse(HlcpSolution<Capacity>& solution, Status status, int solves) noexcept {
+inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves,
+                   double residual) noexcept {
   solution.status = status;
-  solution.uniqueness = status == Status::not_unique ? Uniqueness::refuted : Uniqueness::unproven;
+  solution.uniqueness = uniqueness;
   solution.solves = solves;
-  solution.residual = 0.0;
+  solution.residual = residual;
 }
 
-template <int Capacity, class Count>
-inline void accept(HlcpSolution<Capacity>& solution, Count n, const double* x, Uniqueness uniqueness, int solves,
+template <int Capacity>
+inline void refuse(HlcpSolution<Capacity>& solution, Status status, int solves) noexcept {
+  report(solution, status, status == Status::not_unique ? Uniqueness::refuted : Uniqueness::unproven, solves, 0.0);
+}
+
+template <int Capacity>
+inline void accept(HlcpSolution<Capacity>& solution, int n, const double* x, Uniqueness uniqueness, int solves,
                    double residual) noexcept {
   for (int k = 0; k < n; ++k) {
     solution.x[k] = x[k] + 0.0;  // -0 becomes 0
     solution.sign[k] = static_cast<signed char>(x[k] < 0.0 ? -1 : 1);
   }
-  solution.status = Status::ok;
-  solution.uniqueness = uniqueness;
-  solution.solves = solves;
-  solution.residual = residual;
+  report(solution, Status::ok, uniqueness, solves, residual);
 }
 
 /// Every row and the right side brought to about 1 by powers of two; x of the scaled problem times 2^exponent is the

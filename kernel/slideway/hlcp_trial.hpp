@@ -52,14 +52,16 @@ inline constexpr double contracting =
 /// One sign pattern: W(s), its factors, and what follows from them.
 template <int Capacity>
 struct Trial {
-  static constexpr int stride = Capacity + Capacity % 2;  // rows in pairs; the odd column out is zero
-  alignas(16) double w[Capacity][stride];                 // W(s)
+  static constexpr int stride =
+      Capacity + Capacity % 2;              // rows and what belongs to rows in pairs; the odd one out is zero
+  alignas(16) double w[Capacity][stride];   // W(s)
   alignas(16) double lu[Capacity][stride];  // L below, U on and above the diagonal, rows in the order `row`
   alignas(16) double side[Capacity][2];     // right side | bound: what L and U are applied to, in two lanes
   alignas(16) double x[stride];
-  double size[Capacity];  // of row i in W(s) and in every other pattern: sum_j |w_ij| + |a+_ij - a-_ij|
-  double
-      weight[Capacity];  // 2^-exponent(size), in the order `row`: equilibrates rows in comparisons, never in the data
+  // Of row i in W(s), and at least that in every other pattern: sum_j |w_ij| + |a+_ij - a-_ij|.
+  alignas(16) double size[stride];
+  // 2^-exponent(size), in the order `row`: equilibrates rows in comparisons, never in the data.
+  alignas(16) double weight[stride];
   double inverse[Capacity];  // of the pivots
   int row[Capacity];
   double reach;     // max of the bound on |W^-1| (|A+ - A-| + allowance * size) 1
@@ -86,6 +88,12 @@ inline Pair magnitude(Pair pair) noexcept {
 }
 
 inline constexpr PairBits sign_bits = {static_cast<long long>(sign_bit), static_cast<long long>(sign_bit)};
+
+inline constexpr PairBits exponent_bits = {2047LL << 52, 2047LL << 52};
+inline constexpr PairBits twice_bias = {2046LL << 52, 2046LL << 52};
+
+/// The sums of both pairs.
+inline Pair sums(Pair a, Pair b) noexcept { return Pair{a[0], b[0]} + Pair{a[1], b[1]}; }
 
 /// `plus` where the mask is zero, `minus` where it is all ones.
 inline Pair choose(Pair plus, Pair minus, PairBits mask) noexcept {
@@ -117,37 +125,54 @@ template <class Count, class Body>
 /// these is slack. The true residual is then within 5 (n + 1) 2^-53.
 inline double residual_limit(int n) noexcept { return 4.0 * (n + 1) * 0x1p-53; }
 
-/// Fills w, lu, side, size and weight for W(signs). Returns false when a magnitude is out of the range where nothing
-/// overflows.
+/// Row i of W(signs) into w and lu; returns sum_j |w_ij| and sum_j |a+_ij - a-_ij|, each in two lanes.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline void select_row(const Hlcp<Capacity>& problem, Count n, int i, const PairBits* minus,
+                                              Trial<Capacity>& trial, Pair& entries, Pair& spread) noexcept {
+  entries = spread = Pair{0.0, 0.0};
+  for (int j = 0; j < n; j += 2) {
+    const bool last = j + 1 == n;
+    const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
+    const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
+    const Pair w = choose(p, m, minus[j / 2]);
+    store(&trial.w[i][j], w);
+    store(&trial.lu[i][j], w);
+    entries += magnitude(w);
+    spread += magnitude(p - m);
+  }
+}
+
+/// Fills w, lu, side, size and weight for W(signs), two rows at a time. Returns false when a row is out of the range
+/// where nothing overflows. (A right side that is not finite shows in the residual.)
 template <int Capacity, class Count>
 inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
   PairBits minus[Trial<Capacity>::stride / 2];
   for (int j = 0; j < n; j += 2)
     minus[j / 2] =
         PairBits{-static_cast<long long>(signs[j] == -1), j + 1 < n ? -static_cast<long long>(signs[j + 1] == -1) : 0};
-  unsigned good = 1;
-  for (int i = 0; i < n; ++i) {
-    Pair entries = {0.0, 0.0};
-    Pair spread = {0.0, 0.0};
-    for (int j = 0; j < n; j += 2) {
-      const bool last = j + 1 == n;
-      const Pair p = last ? Pair{problem.plus[i][j], 0.0} : load(&problem.plus[i][j]);
-      const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
-      const Pair w = choose(p, m, minus[j / 2]);
-      store(&trial.w[i][j], w);
-      store(&trial.lu[i][j], w);
-      entries += magnitude(w);
-      spread += magnitude(p - m);
-    }
-    const double perturbation = spread[0] + spread[1];
-    const double size = perturbation + (entries[0] + entries[1]);
-    good = good & sizable(size) & bounded(problem.b[i]);
-    trial.size[i] = size;
-    trial.weight[i] = real((Word{2046} << 52) - (bits(size) & (Word{2047} << 52)));
-    store(trial.side[i], Pair{problem.b[i], perturbation + allowance * size});
+  double total = 0.0;
+  double least = HUGE_VAL;
+  for (int i = 0; i < n; i += 2) {
+    const int next = i + 1 < n ? i + 1 : i;  // the last row of an odd order goes with itself
+    Pair entries[2];
+    Pair spread[2];
+    select_row(problem, n, i, minus, trial, entries[0], spread[0]);
+    select_row(problem, n, next, minus, trial, entries[1], spread[1]);
+    const Pair perturbation = sums(spread[0], spread[1]);
+    const Pair size = perturbation + sums(entries[0], entries[1]);
+    const Pair bound = perturbation + Pair{allowance, allowance} * size;
+    const PairBits exponent = (PairBits)size & exponent_bits;
+    store(&trial.size[i], size);
+    store(&trial.weight[i], (Pair)(twice_bias - exponent));
+    store(trial.side[i], Pair{problem.b[i], bound[0]});
+    store(trial.side[next], Pair{problem.b[next], bound[1]});
     trial.row[i] = i;
+    trial.row[next] = next;
+    total += size[0] + size[1];
+    least = size[0] < least ? size[0] : least;
+    least = size[1] < least ? size[1] : least;
   }
-  return good != 0;
+  return total <= 0x1p200 && least >= 0x1p-200;
 }
 
 /// The row with the largest weighted entry in column k, rows k and below, and that entry: bits of magnitudes compare
@@ -206,7 +231,7 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
 template <int Capacity, class Count>
 inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
   double reach = 0.0;
-  trial.x[Trial<Capacity>::stride - 1] = 0.0;
+  if (n % 2 != 0) trial.x[n] = 0.0;
   const auto back_step = [&](int solved) __attribute__((always_inline)) {
     const int j = n - 1 - solved;
     const double inverse = trial.inverse[j];
@@ -228,30 +253,45 @@ inline bool vanishes(const Hlcp<Capacity>& problem, const Trial<Capacity>& trial
   return zero;
 }
 
-/// residual = max_i |W x - b|_i / (|W||x| + |b|)_i, and whether it is within its limit. False for anything not finite.
+/// W x and |W||x| in row i, each in two lanes.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline void product_row(const Trial<Capacity>& trial, Count n, int i, Pair& sum,
+                                               Pair& size) noexcept {
+  sum = size = Pair{0.0, 0.0};
+  for (int j = 0; j < n; j += 2) {
+    const Pair term = load(&trial.w[i][j]) * gather(&trial.x[j]);
+    sum += term;
+    size += magnitude(term);
+  }
+}
+
+/// residual = max_i |W x - b|_i / (|W||x| + |b|)_i, and whether it is within its limit; two rows at a time. False for
+/// anything not finite.
 template <int Capacity, class Count>
 inline void check(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial) noexcept {
-  const double limit = residual_limit(n);
   double worst = 0.0;
-  bool good = true;
-  for (int i = 0; i < n; ++i) {
-    Pair sum = {0.0, 0.0};
-    Pair size = {0.0, 0.0};
-    for (int j = 0; j < n; j += 2) {
-      const Pair term = load(&trial.w[i][j]) * gather(&trial.x[j]);
-      sum += term;
-      size += magnitude(term);
+  double total = 0.0;  // shows a ratio that is no number
+  bool lost = false;
+  for (int i = 0; i < n; i += 2) {
+    const int next = i + 1 < n ? i + 1 : i;
+    Pair sum[2];
+    Pair size[2];
+    product_row(trial, n, i, sum[0], size[0]);
+    product_row(trial, n, next, sum[1], size[1]);
+    const Pair b = {problem.b[i], problem.b[next]};
+    Pair scale = sums(size[0], size[1]) + magnitude(b);
+    if (__builtin_expect(!(scale[0] >= 0x1p-900 && scale[1] >= 0x1p-900), 0)) {
+      const bool zero[2] = {vanishes(problem, trial, i, n), vanishes(problem, trial, next, n)};
+      lost = lost || !(zero[0] || scale[0] >= 0x1p-900) || !(zero[1] || scale[1] >= 0x1p-900);
+      scale = Pair{zero[0] ? 1.0 : scale[0], zero[1] ? 1.0 : scale[1]};
     }
-    const double miss = std::fabs((sum[0] + sum[1]) - problem.b[i]);
-    const double scale = (size[0] + size[1]) + std::fabs(problem.b[i]);
-    const bool lost = !(scale >= 0x1p-900);
-    if (lost && vanishes(problem, trial, i, n)) continue;
-    const double ratio = miss / scale;
-    good = good & !lost & (ratio <= limit);
-    worst = ratio > worst ? ratio : worst;
+    const Pair ratio = magnitude(sums(sum[0], sum[1]) - b) / scale;
+    total += ratio[0] + ratio[1];
+    worst = ratio[0] > worst ? ratio[0] : worst;
+    worst = ratio[1] > worst ? ratio[1] : worst;
   }
   trial.residual = worst;
-  trial.accurate = good;
+  trial.accurate = !lost && total <= 2.0 * hlcp_max_order && worst <= residual_limit(n);
 }
 
 /// The rounding error of the product a*b (Dekker 1971). Exact for |a|, |b| < 2^996 unless the error underflows.
@@ -453,16 +493,16 @@ inline bool contracts(const Hlcp<Capacity>& problem, Count n, const Trial<Capaci
   }
   double largest = trial.reach;
   for (int step = 0; step < 2; ++step) {
-    double least = HUGE_VAL;
-    for (int i = 0; i < n; ++i) least = z[i] - u[i] < least ? z[i] - u[i] : least;
-    if (!(least < 0.0) || !(largest < HUGE_VAL)) return false;
+    bool hopeless = true;
+    for (int i = 0; i < n && hopeless; ++i) hopeless = z[i] >= u[i];
+    if (hopeless || !(largest < HUGE_VAL)) return false;
     const double unit = 1.0 / largest;
     for (int i = 0; i < n; ++i) u[i] = z[i] * unit;
     perturb(problem, n, trial, u, v);
     largest = reach_of(trial, n, v, z);
-    double most = -HUGE_VAL;
-    for (int i = 0; i < n; ++i) most = z[i] - contracting * u[i] > most ? z[i] - contracting * u[i] : most;
-    if (most <= 0.0) return true;
+    bool below = true;
+    for (int i = 0; i < n && below; ++i) below = z[i] <= contracting * u[i];
+    if (below) return true;
   }
   return false;
 }

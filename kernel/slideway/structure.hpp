@@ -307,8 +307,8 @@ struct RunTime {
   explicit constexpr RunTime(const Scene<Size>& data) noexcept : scene(data), tables(derive(data)) {}
 };
 
-/// Longest loop that is written out. Beyond it, code size costs more than the indices do: see docs/decisions.md.
-inline constexpr int fold_limit = 12;
+/// Longest loop that is written out. Beyond it the compiler takes minutes: see docs/decisions.md.
+inline constexpr int fold_limit = 20;
 
 namespace detail {
 template <class F, int... I>
