@@ -153,9 +153,10 @@ int run(const RunOptions& options) {
   for (std::size_t i = 0; i < values->size(); ++i) inputs.input[i].value = (*values)[i];
 
   Outputs outputs(options);
-  if (!applies(*stepper, *file) || !outputs.open(options.scene.scene)) return bad_input;
+  if (!applies(*stepper, *file)) return bad_input;
   const auto state = starting_state(*stepper, inputs, options);
   if (!state) return refused;
+  if (!outputs.open(options.scene.scene)) return bad_input;
 
   const Plan plan(recording.duration, recording.dt);
   Recorder recorder(*stepper, inputs, plan.steps, options.every, outputs.csv, recording);

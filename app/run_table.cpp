@@ -99,7 +99,7 @@ std::string run_table(const Recording& recording, const std::vector<const Output
   table.row("status", "{}", name(recording.status));
   table.gap();
   table.row("largest drift", "{:12.3g} m or rad, {:.3g} a second", recording.drift_position, recording.drift_velocity);
-  table.row("largest residual", "{:12.3g} of the terms' size", recording.residual);
+  table.row("largest residual", "{:12.3g} summed over the equations, each in its terms' size", recording.residual);
   table.row("most solves", "{:>12} for one set of contact forces", recording.solves_max);
   table.row("uniqueness", "{:>12}", name(recording.uniqueness));
   table.row("unlocated events", "{:>12}", recording.unlocated_events);

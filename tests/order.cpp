@@ -40,8 +40,7 @@ State end_of(const Stepper& stepper, State state, double length, int steps) {
 /// The order that the errors of q show with `steps`, 2 `steps` and 4 `steps` against rk4 with 64 `fine` steps: the
 /// slope of the line through them, which is log2 of the first error over the last, halved.
 double order_of(const Window& window, Method method, int steps, double& last_error) {
-  const auto reading =
-      slideway::io::read_scene(SLIDEWAY_SOURCE_DIR "/scenes/" + std::string(window.scene) + ".toml");
+  const auto reading = slideway::io::read_scene(SLIDEWAY_SOURCE_DIR "/scenes/" + std::string(window.scene) + ".toml");
   EXPECT_TRUE(reading.scene);
   if (!reading.scene) return 0;
   Stepper stepper(reading.scene->scene);
@@ -63,7 +62,8 @@ double order_of(const Window& window, Method method, int steps, double& last_err
     error[k] = std::sqrt(squares);
   }
   last_error = error[2];
-  std::printf("%s %s: errors %.3g %.3g %.3g, orders %.3f %.3f\n", window.scene, slideway::name(method), error[0], error[1], error[2], std::log2(error[0] / error[1]), std::log2(error[1] / error[2]));
+  std::printf("%s %s: errors %.3g %.3g %.3g, orders %.3f %.3f\n", window.scene, slideway::name(method), error[0],
+              error[1], error[2], std::log2(error[0] / error[1]), std::log2(error[1] / error[2]));
   return std::log2(error[0] / error[2]) / 2;
 }
 
@@ -74,7 +74,8 @@ TEST_P(Order, OfRk4IsFour) {
   const double order = order_of(GetParam(), Method::rk4, GetParam().rk4_steps, last_error);
   EXPECT_GT(order, 3.9);  // the project's bar
   EXPECT_LT(order, 4.1);
-  // rad or m: a hundred times what a few hundred roundings of 1e-16 make, and what rk4 with a 16th of the step has left.
+  // rad or m: a hundred times what a few hundred roundings of 1e-16 make, and what rk4 with a 16th of the step has
+  // left.
   EXPECT_GT(last_error, 1e-12);
   RecordProperty("order", testing::PrintToString(order));
 }
@@ -87,13 +88,12 @@ TEST_P(Order, OfEulerIsOne) {
   RecordProperty("order", testing::PrintToString(order));
 }
 
-INSTANTIATE_TEST_SUITE_P(, Order,
-                         testing::Values(Window{"crank_rocker", 0, 0.5, 20, 200}, Window{"crank_rocker_free", 0.3, 1, 200, 500},
-                                         Window{"crank_rocker_offset", 0.32, 0.82, 160, 500},
-                                         Window{"elliptic_trammel", 0, 0.19, 20, 500},
-                                         Window{"rod_on_two_guides", 0, 0.1, 10, 200},
-                                         Window{"slider_crank_driven", 0, 0.22, 20, 500},
-                                         Window{"squeezer", 0, 0.005, 80, 1000}, Window{"four_bar_chain", 0, 0.5, 10, 200}),
-                         [](const auto& instance) { return std::string(instance.param.scene); });
+INSTANTIATE_TEST_SUITE_P(
+    , Order,
+    testing::Values(Window{"crank_rocker", 0, 0.5, 20, 200}, Window{"crank_rocker_free", 0.3, 1, 200, 500},
+                    Window{"crank_rocker_offset", 0.32, 0.82, 160, 500}, Window{"elliptic_trammel", 0, 0.19, 20, 500},
+                    Window{"rod_on_two_guides", 0, 0.1, 10, 200}, Window{"slider_crank_driven", 0, 0.22, 20, 500},
+                    Window{"squeezer", 0, 0.005, 80, 1000}, Window{"four_bar_chain", 0, 0.5, 10, 200}),
+    [](const auto& instance) { return std::string(instance.param.scene); });
 
 }  // namespace

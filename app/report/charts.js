@@ -16,7 +16,7 @@ function chartList({ scene, samples }) {
   const perGuide = (columns, alone) =>
     guides.map((guide, g) => ({ name: guide.name, values: columns[g], colour: colour(g, alone), dash: dash(g) }));
   const perContact = guides.flatMap((guide, g) => guide.contacts.map((_, k) => ({
-    name: guide.contacts.length > 1 ? `${guide.name} ${k + 1}` : guide.name, colour: colour(g, "--contact"), dash: 2 * dash(g) + k })));
+    name: guide.contacts.length > 1 ? `${guide.name}.${k}` : guide.name, colour: colour(g, "--contact"), dash: 2 * dash(g) + k })));
   perContact.forEach((series, c) => (series.values = samples.lambda[c]));
   const perDrive = (unit) => drives.flatMap((drive, d) => (drive.unit !== unit ? [] :
     [{ name: drive.name, values: samples.drive[d], colour: drives.length > 1 ? `--s${d % SERIES_COLOURS}` : "--drive", dash: dash(d) }]));

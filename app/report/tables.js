@@ -47,7 +47,7 @@ function writeFigures({ run, energy }) {
 
 function table(title, rows, heads) {
   const body = element("tbody", {}, ...rows.map(([name, ...cells]) =>
-    element("tr", {}, element("th", { scope: "row" }, name), ...cells.map((cell) => element("td", {}, cell)))));
+    element("tr", {}, element("th", { scope: "row" }, name), ...cells.map((cell) => element("td", String(cell).length < 24 ? { class: "short" } : {}, cell)))));
   const node = element("table", {}, element("caption", {}, title));
   if (heads) node.append(element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))));
   node.append(body);
@@ -55,7 +55,7 @@ function table(title, rows, heads) {
 }
 
 function peakRows({ scene, peaks }) {
-  const contacts = scene.guides.flatMap((guide) => guide.contacts.map((_, k) => `λ ${guide.name}${guide.contacts.length > 1 ? ` ${k + 1}` : ""}`));
+  const contacts = scene.guides.flatMap((guide) => guide.contacts.map((_, k) => `λ ${guide.name}${guide.contacts.length > 1 ? `.${k}` : ""}`));
   const rows = [];
   const add = (kind, name, unit, peak) => peak && rows.push({ kind, size: Math.abs(peak[0] ?? 0), row: [name, `${format(peak[0], 6)} ${unit}`, `${format(peak[1], 5)} s`] });
   contacts.forEach((name, c) => add("lambda", name, "N", peaks.lambda[c]));

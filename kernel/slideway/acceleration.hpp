@@ -335,10 +335,10 @@ Status accelerate(const Source& source, double t, double tau, const double* __re
       solve(hlcp, static_cast<int>(table.rough), answer, solving.hlcp);
     }
     report.solves = report.solves > answer.solves ? report.solves : answer.solves;
+    report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
     if (answer.status != Status::ok) {
       return independent_contacts(hlcp, table.rough) ? answer.status : Status::singular_constraints;
     }
-    report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
     for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
       r.lambda[table.rough_contact[m]] = answer.x[m];
       sign[table.rough_contact[m]] = answer.sign[m];

@@ -440,25 +440,34 @@ inline double lu_error(const Trial<Capacity>& trial, int n) noexcept {
 }
 
 /// z = M(U)^-1 M(L)^-1 P v, an upper bound of |W^-1| v for v >= 0; returns its largest component. n^2 multiplications.
-/// Sums run over pairs; what a pair reaches beyond its triangle meets a zero.
+/// Row by row, the newest component last: only one multiplication and one addition wait for it.
 template <int Capacity, class Count>
 inline double reach_of(const Trial<Capacity>& trial, Count n, const double* v, double* z) noexcept {
-  alignas(16) double y[Trial<Capacity>::stride] = {};
-  alignas(16) double w[Trial<Capacity>::stride] = {};
+  double y[Capacity];
+  double newest = 0.0;
   const auto forward_row = [&](int i) __attribute__((always_inline)) {
-    Pair sum = {v[trial.row[i]], 0.0};
-    for (int k = 0; k < i; k += 2) sum += magnitude(load(&trial.lu[i][k])) * gather(&y[k]);
-    y[i] = sum[0] + sum[1];
+    const auto& l = trial.lu[i];
+    Pair pairs = {v[trial.row[i]], 0.0};
+    for (int k = 0; k + 2 < i; k += 2) pairs += magnitude(load(&l[k])) * gather(&y[k]);
+    double sum = pairs[0] + pairs[1];
+    if (i >= 2 && i % 2 == 0) sum += std::fabs(l[i - 2]) * y[i - 2];
+    if (i >= 1) sum += std::fabs(l[i - 1]) * newest;
+    y[i] = newest = sum;
   };
   each(n, forward_row);
   double largest = 0.0;
   const auto backward_row = [&](int solved) __attribute__((always_inline)) {
     const int i = n - 1 - solved;
-    Pair sum = {y[i], 0.0};
-    for (int j = (i + 1) & ~1; j < n; j += 2) sum += magnitude(load(&trial.lu[i][j])) * gather(&w[j]);
-    w[i] = (sum[0] + sum[1]) * std::fabs(trial.inverse[i]);
-    z[i] = w[i];
-    largest = z[i] > largest ? z[i] : largest;
+    const auto& u = trial.lu[i];
+    Pair pairs = {y[i], 0.0};
+    for (int j = n - 2; j >= i + 2; j -= 2) pairs += magnitude(gather(&u[j])) * gather(&z[j]);
+    double sum = pairs[0] + pairs[1];
+    if (solved >= 2 && solved % 2 == 0) sum += std::fabs(u[i + 2]) * z[i + 2];
+    const double inverse = std::fabs(trial.inverse[i]);
+    sum *= inverse;
+    if (solved >= 1) sum += (std::fabs(u[i + 1]) * inverse) * newest;
+    z[i] = newest = sum;
+    largest = sum > largest ? sum : largest;
   };
   each(n, backward_row);
   return largest;

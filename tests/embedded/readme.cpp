@@ -1,5 +1,5 @@
 #include <cstdio>
-#include <slideway/scenes/crank_rocker.hpp>  // slideway export crank_rocker -o crank_rocker.hpp
+#include <slideway/scenes/crank_rocker.hpp>  // slideway export crank_rocker -o slideway/scenes/crank_rocker.hpp
 #include <slideway/step.hpp>
 
 int main() {
