@@ -203,6 +203,7 @@ template <int N, bool Chain>
         problem.hlcp.minus[0][0] += link;
       }
       slideway::solve(problem.hlcp, std::integral_constant<int, N>{}, problem.solution);
+      benchmark::ClobberMemory();
       link = problem.solution.x[0] * 0x1p-600;
       sum += problem.solution.x[0];
     }
@@ -226,6 +227,7 @@ template <int N, class Lu, bool Chain>
         lu.solve(problem.w, problem.hlcp.b);
       else
         plain(problem.w, problem.hlcp.b, lu);
+      benchmark::DoNotOptimize(lu);
       link = lu.x[0] * 0x1p-600;
       sum += lu.x[0];
     }

@@ -12,9 +12,9 @@ inline constexpr int hlcp_max_order = 32;
 template <int Capacity>
 struct Hlcp {
   static_assert(Capacity >= 1 && Capacity <= hlcp_max_order, "1 <= order <= 32");
-  double plus[Capacity][Capacity];   ///< A+
-  double minus[Capacity][Capacity];  ///< A-
-  double b[Capacity];
+  alignas(16) double plus[Capacity][Capacity];   ///< A+
+  alignas(16) double minus[Capacity][Capacity];  ///< A-
+  alignas(16) double b[Capacity];
 };
 
 /// In: the signs to try first. Out: the solution with its certificate; x and sign are changed only when status is ok.
