@@ -217,6 +217,23 @@ TEST(CrankRocker, FrictionTakesItsClosedFormsWorkInATurn) {
                  testing::PrintToString(miss(heavy.work / static_cast<double>(2 * pi), 3.223942813665482L)));
 }
 
+TEST(CrankRocker, KinematicStepsKeepTheEnergyBalance) {
+  const auto stepper = by<Stepper<crank_rocker>>(Method::kinematic);
+  auto state = stepper.start();
+  const auto energy = [&] { return stepper.kinetic_energy(state) + stepper.potential_energy(state); };
+  const double initial = energy();
+  double most = 0, balance = 0;
+  for (int k = 0; k < 50; ++k) {  // part of a turn: over whole ones every quadrature is good
+    const Report report = stepper.step(state, 0.01);
+    ASSERT_EQ(report.status, Status::ok);
+    balance += report.energy.work - report.energy.dissipated + report.energy.constraint_work;
+    most = std::fmax(most, stepper.kinetic_energy(state));
+  }
+  // Of the kinetic energy: Simpson's h^4 f(4) / 180 with h = 5e-3 s, and f(4) some 3^4 to 6^4 f.
+  EXPECT_LT(std::fabs(energy() - initial - balance), 1e-8 * most);
+  RecordProperty("balance", testing::PrintToString(std::fabs(energy() - initial - balance) / most));
+}
+
 TEST(CrankRocker, IntegratedForTwentySecondsTheRockerStaysWhereItBelongs) {
   const Stepper<crank_rocker> stepper;
   auto state = stepper.start();

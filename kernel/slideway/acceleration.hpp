@@ -264,18 +264,20 @@ constexpr double residual_bound(const Source& source) noexcept {
 /// The weaker of two statements about uniqueness.
 constexpr Uniqueness weaker(Uniqueness a, Uniqueness b) noexcept { return a > b ? a : b; }
 
-/// Is the sliding speed zero to rounding? |T q'| <= 4 eps (coordinates + 1) sum_j |T_j q'_j|: each product carries the
-/// roundings of a lever arm (one for each body on its path) and its own. Loops give 1e-17 where they should give 0.
+/// Is the sliding speed zero to rounding? |T q'| <= 4 eps (coordinates + 1) sum_j |q'_j| size_j, where size_j is what a
+/// column of T is made of: 1 for a slide, for a turn the places whose difference is its lever. Each carries a rounding
+/// for each body on its path. Loops give 1e-17 where they should give 0.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool at_rest(const Source& source, const Work<Size>& w, int g, const double* v, double slip) noexcept {
   const auto& table = source.tables;
   const Link<Size>& link = table.guide[g];
-  const Sliding& s = w.friction.sliding[g];
+  const Vec2 place = w.friction.sliding[g].place;
   double terms = 0;
   for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
-    const int j = link.column[c], i = table.body_of[j];
-    const Vec2 d = s.place - w.kinematics.origin[i];
-    terms += std::fabs(v[j] * dot(s.t, column(table.motion[j], w.kinematics.frame[i], d, 1)));
+    const int j = link.column[c];
+    const Vec2 origin = w.kinematics.origin[table.body_of[j]];
+    const double lever = std::fabs(place.x) + std::fabs(place.y) + std::fabs(origin.x) + std::fabs(origin.y);
+    terms += std::fabs(v[j]) * (table.motion[j] == Motion::turn ? lever : 1);
   });
   return std::fabs(slip) <= 4 * detail::epsilon * (link.columns + 1) * terms;
 }

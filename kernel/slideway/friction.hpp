@@ -93,6 +93,7 @@ constexpr double rank_bound(const Source& source) noexcept {
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool orthonormalise(const Source& source, Friction<Size>& fr, int m) noexcept {
   constexpr int capacity = Friction<Size>::ideal;
+  SLIDEWAY_ASSUME(m >= 0 && m < capacity);
   double* row = fr.Q[m];
   fr.ideal_norm[m] = std::sqrt(inner(source, row, row));
   for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD { fr.R[m][i] = 0; });

@@ -48,14 +48,14 @@ class BasicStepper {
   /// No heap; at most four evaluations of `accelerate` (three projections for kinematic).
   Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept {
     Report report;
-    if (!(dt > 0) || !detail::finite(dt)) {
-      report.status = Status::invalid_input;
-      return report;
-    }
     const bool same_dt = dt == state.dt;
     const double start = same_dt ? state.start : state.time();
     const long long steps = same_dt ? state.steps : 0;
     const double t = start + static_cast<double>(steps) * dt;
+    if (!(dt > 0) || !detail::finite(t)) {
+      report.status = Status::invalid_input;
+      return report;
+    }
     Next next;
     begin(state, next);
     report.status = method == Method::rk4     ? step_rk4(state, t, dt, inputs, next, report)
@@ -79,6 +79,10 @@ class BasicStepper {
   /// Forces and accelerations at the state. r is valid when the report's status is ok.
   Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
     Report report;
+    if (!detail::finite(state.time())) {
+      report.status = Status::invalid_input;
+      return report;
+    }
     Next at;
     begin(state, at);
     report.status = evaluate(state.time(), 0, state.q, state.v, inputs, at, r, report);
