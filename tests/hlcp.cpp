@@ -162,6 +162,23 @@ TEST(Hlcp, SolvesTheCycleOfSignIteration) {
   expect_solved_from_everywhere<3>(problem, {1 / (1 + c), 1 / (1 + c), 1 / (1 + c)}, Uniqueness::certified, 1e-15);
 }
 
+TEST(Hlcp, LeavesACycleAboveOrderFourByFlipsNotByEnumeration) {
+  Matrix<9> s = {};
+  Matrix<9> star = {};
+  Vector<9> b;
+  for (int block = 0; block < 9; block += 3)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        s[block + i][block + j] = circulant(2.0, 0.0, 1.1)[i][j];
+        star[block + i][block + j] = circulant(0.0, 0.0, 1.1)[i][j];
+      }
+  b.fill(2.0);
+  const Hlcp<9> problem = absolute<9>(s, star, b);
+  const HlcpSolution<9> solution = answer(problem, 0x49);
+  expect_residual(problem, solution);
+  EXPECT_LE(solution.solves, 40);
+}
+
 TEST(Hlcp, SolvesKostrevasMatrix) {
   const Matrix<3> m = {{{1, 2, 0}, {0, 1, 2}, {2, 0, 1}}};
   const double z = 1.0 / 3.0;
@@ -800,6 +817,34 @@ TEST(Hlcp, KeepsAllDigitsAcrossMassRatios) {
   }
 }
 
+TEST(Hlcp, SolvesTiesOfIllConditionedProblems) {
+  // The last row of N almost repeats the first; components planted at zero come out as rounding errors, magnified.
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int round = 0; round < 500; ++round) {
+    double rows[4][6];
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 6; ++k) rows[i][k] = i < 3 ? uniform(random) : rows[0][k] + 1e-3 * uniform(random);
+    Matrix<4> s = {};
+    Matrix<4> star = {};
+    Vector<4> b = {};
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        for (int k = 0; k < 6; ++k) s[i][j] += rows[i][k] * rows[j][k];
+        star[i][j] = 1e-9 * uniform(random);
+      }
+    Hlcp<4> problem = absolute<4>(s, star, b);
+    for (int j = 0; j < 4; ++j) {
+      const double x = random() % 2 == 0 ? 0.0 : uniform(random);
+      for (int i = 0; i < 4; ++i) problem.b[i] += (x < 0.0 ? problem.minus[i][j] : problem.plus[i][j]) * x;
+    }
+    const HlcpSolution<4> first = answer(problem);
+    expect_residual(problem, first);
+    EXPECT_EQ(first.uniqueness, Uniqueness::certified);
+    for (unsigned code = 1; code < 16; ++code) ASSERT_TRUE(same_bits(answer(problem, code), first)) << round;
+  }
+}
+
 // ---- orders and the matrix border
 
 TEST(Hlcp, SolvesOrdersZeroToThirtyTwo) {
@@ -833,6 +878,22 @@ TEST(Hlcp, TakesAnythingButMinusOneForPlus) {
     odd.sign[2] = -77;
     slideway::solve(problem, 3, odd);
     EXPECT_TRUE(same_bits(odd, answer(problem)));
+  }
+}
+
+TEST(Hlcp, ReturnsNoNegativeZero) {
+  for (unsigned code = 0; code < 4; ++code) {
+    EXPECT_FALSE(std::signbit(answer(hlcp<1>({{{-1.0}}}, {{{-2.0}}}, {0.0}), code % 2).x[0]));
+    const Matrix<2> matrix = {{{-2.0, 1.0}, {1.0, -2.0}}};
+    for (const Vector<2>& b : {Vector<2>{0.0, -0.0}, Vector<2>{2.0, -1.0}}) {
+      const HlcpSolution<2> solution = answer(hlcp<2>(matrix, matrix, b), code);
+      ASSERT_EQ(solution.status, Status::ok);
+      EXPECT_FALSE(solution.x[1] == 0.0 && std::signbit(solution.x[1]));
+      EXPECT_EQ(solution.sign[1], 1);
+    }
+    const Matrix<3> three = {{{-2.0, 0.0, 0.0}, {0.0, -2.0, 0.0}, {0.0, 0.0, -2.0}}};
+    const HlcpSolution<3> zero = answer(hlcp<3>(three, three, {0.0, 0.0, 0.0}), code);
+    for (const double x : zero.x) EXPECT_FALSE(std::signbit(x));
   }
 }
 
@@ -884,6 +945,7 @@ TEST(Hlcp, RefusesEigenMatricesOfDifferentSizes) {
   EXPECT_EQ(solve_hlcp(three, two, BoundedVector::Ones(3).eval()).status, Status::invalid_input);
   EXPECT_EQ(solve_hlcp(three, three, BoundedVector::Ones(2).eval()).status, Status::invalid_input);
   EXPECT_EQ(solve_hlcp(Bounded(3, 2), three, BoundedVector::Ones(3).eval()).status, Status::invalid_input);
+  EXPECT_EQ(solve_hlcp(three, Bounded(2, 3), BoundedVector::Ones(3).eval()).status, Status::invalid_input);
   const auto empty = solve_hlcp(Bounded(0, 0), Bounded(0, 0), BoundedVector(0));
   EXPECT_EQ(empty.status, Status::ok);
   EXPECT_EQ(empty.x.size(), 0);

@@ -12,6 +12,9 @@
 #include <slideway/step.hpp>
 #include <vector>
 
+// Doubles are promoted on purpose: what is compared with is computed in long double.
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 namespace {
 
 using slideway::ground;

@@ -106,8 +106,8 @@ TEST(Memory, AStepOfTheCrankRockerNeedsFourKibibytesOfStack) {
     #include <slideway/scenes/crank_rocker.hpp>
     #include <slideway/step.hpp>
     using Stepper = slideway::Stepper<crank_rocker>;
-    slideway::Report take_step(const Stepper& stepper, Stepper::State& state, double dt, const Stepper::Inputs& inputs) {
-      return stepper.step(state, dt, inputs);
+    slideway::Report take_step(const Stepper& stepper, Stepper::State& state, double dt, const Stepper::Inputs& in) {
+      return stepper.step(state, dt, in);
     })";
   const std::string command =
       "cd '" + directory.string() +

@@ -62,8 +62,6 @@ double order_of(const Window& window, Method method, int steps, double& last_err
     error[k] = std::sqrt(squares);
   }
   last_error = error[2];
-  std::printf("%s %s: errors %.3g %.3g %.3g, orders %.3f %.3f\n", window.scene, slideway::name(method), error[0],
-              error[1], error[2], std::log2(error[0] / error[1]), std::log2(error[1] / error[2]));
   return std::log2(error[0] / error[2]) / 2;
 }
 

@@ -12,6 +12,9 @@
 #include <string>
 #include <vector>
 
+// Doubles are promoted on purpose: what is compared with is computed in long double.
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 namespace {
 
 using slideway::Drive;
@@ -241,7 +244,7 @@ TEST(StepRefuses, ProblemsWithoutAndWithSeveralSolutions) {
   const Stepper never(shipped("overhung_slider", {"guide.way.mu=0.2", "load.load1.torque=0.0"}));
   expect_refusal(never, never.start(), Status::no_solution);
   const Stepper twice(shipped("overhung_slider", {"guide.way.mu=0.2"}));
-  EXPECT_EQ(expect_refusal(twice, twice.start(), Status::not_unique).uniqueness, slideway::Uniqueness::certified);
+  EXPECT_EQ(expect_refusal(twice, twice.start(), Status::not_unique).uniqueness, slideway::Uniqueness::refuted);
 }
 
 TEST(StepRefuses, ResultsThatOverflow) {

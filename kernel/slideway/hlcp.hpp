@@ -4,6 +4,11 @@
 // iff W(s) x = b and s_j x_j >= 0 for some s. One trial is one linear solve with W(s), and everything that follows from
 // it: signs, residual, uniqueness. The answer always is the trial of the final signs, so how they were found changes no
 // bit of it.
+//
+//   hlcp_problem.hpp   what is asked and answered      hlcp_unique.hpp   proofs that there is one solution
+//   hlcp_trial.hpp     one trial                       hlcp_decide.hpp   n <= 4 decided exactly
+//   hlcp_search.hpp    which signs to try next         here              the short ways for n = 1 and 2, and the
+//   interface
 #pragma once
 
 #include <slideway/hlcp_search.hpp>

@@ -8,13 +8,14 @@
 
 namespace slideway::hlcp_detail {
 
-inline constexpr int decidable = 4;              ///< the largest order that is decided exactly
-inline constexpr int patterns = 1 << decidable;  ///< subsets of its indices
+inline constexpr int decidable = 4;  ///< the largest order that is decided exactly
 
 /// A sum of doubles without rounding: parts that do not overlap, in order of increasing size (Shewchuk, Discrete
-/// Comput. Geom. 18, 1997, GROW-EXPANSION). The 24 terms of a 4x4 determinant have at most 8 parts each.
+/// Comput. Geom. 18, 1997, GROW-EXPANSION). The Order! terms of a determinant have at most 2^(Order - 1) parts each.
+template <int Order>
 struct ExactSum {
-  double part[24 * 8];
+  static constexpr int terms = Order == 4 ? 24 : Order == 3 ? 6 : Order;
+  double part[terms << (Order - 1)] = {};
   int size = 0;
 
   void add(double term) noexcept {
@@ -35,16 +36,18 @@ struct ExactSum {
 
 /// Problem data of order n <= 4, scaled to about 1. Exact signs need every nonzero magnitude in [2^-180, 2^220]:
 /// products of four and their errors then neither overflow nor underflow.
+template <int Order>
 struct Small {
-  double plus[decidable][decidable];
-  double minus[decidable][decidable];
-  double b[decidable];
+  double plus[Order][Order];
+  double minus[Order][Order];
+  double b[Order];
   int n;
   bool within_range;
 };
 
+template <int Order>
 struct Minor {
-  double a[decidable][decidable];
+  double a[Order][Order];
   int m;
 };
 
@@ -55,8 +58,9 @@ struct Determinant {
 
 /// det(a) by expansion along rows over all column subsets; at most 32 products.
 /// |value - det| <= 2^-49 size: level i adds at most i roundings, 1 + 2 + 3 + 4 in all, and 2^-49 = 16 units.
-inline Determinant determinant(const Minor& minor) noexcept {
-  Determinant of[patterns] = {};
+template <int Order>
+inline Determinant determinant(const Minor<Order>& minor) noexcept {
+  Determinant of[1 << Order] = {};
   of[0] = {1.0, 1.0};
   for (int set = 1; set < (1 << minor.m); ++set) {
     int row = -1;
@@ -77,16 +81,19 @@ inline Determinant determinant(const Minor& minor) noexcept {
 }
 
 /// sign det(a), exactly: all m! terms as sums of 2^(m-1) doubles. At most 192 additions of at most 192 parts.
-inline int exact_sign(const Minor& minor) noexcept {
-  ExactSum sum;
-  int column[decidable] = {0, 1, 2, 3};
-  for (int term = 0; term < 24; ++term) {
+template <int Order>
+inline int exact_sign(const Minor<Order>& minor) noexcept {
+  const int m = minor.m < Order ? minor.m : Order;
+  ExactSum<Order> sum;
+  int column[Order];
+  for (int k = 0; k < Order; ++k) column[k] = k;
+  for (int term = 0; term < ExactSum<Order>::terms; ++term) {
     int inversions = 0;
-    for (int i = 0; i < minor.m; ++i)
+    for (int i = 0; i < m; ++i)
       for (int k = 0; k < i; ++k) inversions += column[k] > column[i] ? 1 : 0;
-    double part[8] = {(inversions & 1) != 0 ? -1.0 : 1.0};
+    double part[1 << (Order - 1)] = {(inversions & 1) != 0 ? -1.0 : 1.0};
     int parts = 1;
-    for (int i = 0; i < minor.m; ++i) {
+    for (int i = 0; i < m; ++i) {
       const double entry = minor.a[i][column[i]];
       for (int k = 0; k < parts && i > 0; ++k) part[parts + k] = product_error(part[k], entry);
       for (int k = 0; k < parts; ++k) part[k] *= entry;
@@ -94,7 +101,7 @@ inline int exact_sign(const Minor& minor) noexcept {
     }
     for (int k = 0; k < parts; ++k)
       if (part[k] != 0.0) sum.add(part[k]);
-    if (!std::next_permutation(column, column + minor.m)) break;
+    if (!std::next_permutation(column, column + m)) break;
   }
   return sum.sign();
 }
@@ -104,7 +111,8 @@ struct Sign {
   bool frail;  ///< not zero, but indistinguishable from zero in working precision; or not decidable in its range
 };
 
-inline Sign sign_of(const Minor& minor, bool within_range) noexcept {
+template <int Order>
+inline Sign sign_of(const Minor<Order>& minor, bool within_range) noexcept {
   const Determinant det = determinant(minor);
   const double doubt = 0x1p-49 * det.size;
   if (det.value > doubt) return {1, false};
@@ -116,13 +124,16 @@ inline Sign sign_of(const Minor& minor, bool within_range) noexcept {
 }
 
 /// Column k of W(signs); k = n is b.
-inline double entry(const Small& p, int row, int k, const signed char* signs) noexcept {
+template <int Order>
+inline double entry(const Small<Order>& p, int row, int k, const signed char* signs) noexcept {
   return k == p.n ? p.b[row] : (signs[k] < 0 ? p.minus[row][k] : p.plus[row][k]);
 }
 
 /// The minor of [W(signs) | b] with the rows and columns given as bit sets of equal size.
-inline Minor minor_of(const Small& p, int rows, const int* columns, int m, const signed char* signs) noexcept {
-  Minor minor = {{}, m};
+template <int Order>
+inline Minor<Order> minor_of(const Small<Order>& p, int rows, const int* columns, int m,
+                             const signed char* signs) noexcept {
+  Minor<Order> minor = {{}, m};
   int i = 0;
   for (int row = 0; row < p.n; ++row) {
     if (((rows >> row) & 1) == 0) continue;
@@ -145,7 +156,8 @@ struct Basis {
   Sign det;
 };
 
-inline Basis basis_of(const Small& p, const int* columns, int m, const signed char* signs) noexcept {
+template <int Order>
+inline Basis basis_of(const Small<Order>& p, const int* columns, int m, const signed char* signs) noexcept {
   Basis found = {0, {0, false}};
   for (int rows = 0; rows < (1 << p.n); ++rows) {
     if (count(rows) != m) continue;
@@ -157,7 +169,8 @@ inline Basis basis_of(const Small& p, const int* columns, int m, const signed ch
 }
 
 /// Whether the columns and one more depend on each other in every row, given that they do in the basis rows.
-inline bool dependent_elsewhere(const Small& p, int basis, const int* columns, int m, const signed char* signs,
+template <int Order>
+inline bool dependent_elsewhere(const Small<Order>& p, int basis, const int* columns, int m, const signed char* signs,
                                 bool& frail) noexcept {
   for (int row = 0; row < p.n; ++row) {
     if (((basis >> row) & 1) != 0) continue;
@@ -168,17 +181,19 @@ inline bool dependent_elsewhere(const Small& p, int basis, const int* columns, i
   return true;
 }
 
+template <int Order>
 struct Vertex {
   bool exists;
-  bool frail;           ///< a rank on which the answer rests is doubtful in working precision
-  double x[decidable];  ///< by Cramer's rule, rounded
+  bool frail;       ///< a rank on which the answer rests is doubtful in working precision
+  double x[Order];  ///< by Cramer's rule, rounded
 };
 
 /// Whether there is a solution with exactly the signs sigma in {-1, 0, 1}^n whose columns are independent: a vertex of
 /// the solution set.
-inline Vertex vertex_at(const Small& p, const signed char* sigma) noexcept {
-  Vertex vertex = {false, false, {}};
-  int columns[decidable + 1];
+template <int Order>
+inline Vertex<Order> vertex_at(const Small<Order>& p, const signed char* sigma) noexcept {
+  Vertex<Order> vertex = {false, false, {}};
+  int columns[Order + 1] = {};
   int m = 0;
   for (int k = 0; k < p.n; ++k)
     if (sigma[k] != 0) columns[m++] = k;
@@ -191,7 +206,7 @@ inline Vertex vertex_at(const Small& p, const signed char* sigma) noexcept {
   for (int k = 0; k < m; ++k) {
     const int column = columns[k];
     columns[k] = p.n;
-    const Minor numerator = minor_of(p, basis.rows, columns, m, sigma);
+    const Minor<Order> numerator = minor_of(p, basis.rows, columns, m, sigma);
     columns[k] = column;
     if (sign_of(numerator, p.within_range).sign * basis.det.sign != sigma[column]) return vertex;
     vertex.x[column] = determinant(numerator).value / det;
@@ -202,8 +217,9 @@ inline Vertex vertex_at(const Small& p, const signed char* sigma) noexcept {
 
 /// Whether the columns with signs tau != 0 have a null vector with exactly these signs, and no smaller set of them has
 /// one: an extreme ray.
-inline bool ray_at(const Small& p, const signed char* tau, bool& frail) noexcept {
-  int columns[decidable];
+template <int Order>
+inline bool ray_at(const Small<Order>& p, const signed char* tau, bool& frail) noexcept {
+  int columns[Order] = {};
   int m = 0;
   for (int k = 0; k < p.n; ++k)
     if (tau[k] != 0) columns[m++] = k;
@@ -211,7 +227,7 @@ inline bool ray_at(const Small& p, const signed char* tau, bool& frail) noexcept
   if (basis.det.sign == 0 || !dependent_elsewhere(p, basis.rows, columns, m, tau, frail)) return false;
   int direction = 0;
   for (int k = 0; k < m; ++k) {
-    int others[decidable];
+    int others[Order] = {};
     int size = 0;
     for (int i = 0; i < m; ++i)
       if (i != k) others[size++] = columns[i];
@@ -226,12 +242,13 @@ inline bool ray_at(const Small& p, const signed char* tau, bool& frail) noexcept
 enum class Decision : unsigned char { certified, single, several, none, doubtful };
 
 /// What is true of a small problem.
+template <int Order>
 struct Decided {
   Decision decision;
-  signed char sigma[decidable];  ///< the signs in {-1, 0, 1} of the solution to take
-  double x[decidable];           ///< that solution, roughly
-  bool frail;                    ///< the rank of that solution's columns is doubtful in working precision
-  int determinants;              ///< patterns examined
+  signed char sigma[Order];  ///< the signs in {-1, 0, 1} of the solution to take
+  double x[Order];           ///< that solution, roughly
+  bool frail;                ///< the rank of that solution's columns is doubtful in working precision
+  int determinants;          ///< patterns examined
 };
 
 /// The c-th sign vector: base 2 (+1, -1) or base 3 (+1, -1, 0).
@@ -245,12 +262,14 @@ inline void pattern(int code, int n, int base, signed char* signs) noexcept {
 
 /// Whether all 2^n determinants of W(s) have one strict sign: the column W-property (Sznajder & Gowda 1995), that is,
 /// one solution for every b.
-inline bool has_w_property(const Small& p, bool& frail) noexcept {
-  constexpr int columns[decidable] = {0, 1, 2, 3};
+template <int Order>
+inline bool has_w_property(const Small<Order>& p, bool& frail) noexcept {
+  int columns[Order];
+  for (int k = 0; k < Order; ++k) columns[k] = k;
   int common = 0;
   bool holds = true;
   for (int code = 0; code < (1 << p.n); ++code) {
-    signed char signs[decidable];
+    signed char signs[Order];
     pattern(code, p.n, 2, signs);
     const Sign det = sign_of(minor_of(p, (1 << p.n) - 1, columns, p.n, signs), p.within_range);
     frail = frail || det.frail;
@@ -268,9 +287,10 @@ inline bool compatible(const signed char* sigma, const signed char* tau, int n) 
 }
 
 /// Whether a ray starts at the vertex sigma inside an orthant: a continuum of solutions.
-inline bool has_ray(const Small& p, const signed char* sigma, int codes, bool& frail) noexcept {
+template <int Order>
+inline bool has_ray(const Small<Order>& p, const signed char* sigma, int codes, bool& frail) noexcept {
   for (int code = 0; code < codes; ++code) {
-    signed char tau[decidable];
+    signed char tau[Order];
     pattern(code, p.n, 3, tau);
     bool zero = true;
     for (int k = 0; k < p.n; ++k) zero = zero && tau[k] == 0;
@@ -284,8 +304,9 @@ inline bool has_ray(const Small& p, const signed char* sigma, int codes, bool& f
 /// vertices, and exactly one iff there is one vertex and no ray of its orthants starts there. Among several it takes
 /// the one with the signs `preferred`, else `second`, else the first. At most 3^n = 81 supports of at most 2 * 6 minors
 /// each.
-inline Decided decide(const Small& p, const signed char* preferred, const signed char* second) noexcept {
-  Decided result = {Decision::none, {}, {}, false, 1 << p.n};
+template <int Order>
+inline Decided<Order> decide(const Small<Order>& p, const signed char* preferred, const signed char* second) noexcept {
+  Decided<Order> result = {Decision::none, {}, {}, false, 1 << p.n};
   bool frail = false;
   const bool unique = has_w_property(p, frail);
   int codes = 1;
@@ -294,15 +315,17 @@ inline Decided decide(const Small& p, const signed char* preferred, const signed
   int sound = 0;
   int liked = 0;
   for (int code = 0; code < codes && !(unique && found == 1); ++code) {
-    signed char sigma[decidable];
+    signed char sigma[Order] = {};
     pattern(code, p.n, 3, sigma);
-    const Vertex vertex = vertex_at(p, sigma);
+    const Vertex<Order> vertex = vertex_at(p, sigma);
     frail = frail || (vertex.frail && !vertex.exists);
     if (!vertex.exists) continue;
     const int likes = compatible(sigma, preferred, p.n) ? 2 : (compatible(sigma, second, p.n) ? 1 : 0);
     if (found == 0 || likes > liked) {
-      std::copy(sigma, sigma + p.n, result.sigma);
-      std::copy(vertex.x, vertex.x + p.n, result.x);
+      for (int k = 0; k < Order; ++k) {  // of constant length, so that no library function is called
+        result.sigma[k] = sigma[k];
+        result.x[k] = vertex.x[k];
+      }
       result.frail = vertex.frail;
       liked = likes;
     }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <slideway/hlcp_decide.hpp>
-#include <slideway/hlcp_trial.hpp>
+#include <slideway/hlcp_unique.hpp>
 
 namespace slideway::hlcp_detail {
+
+inline double larger(double a, double b) noexcept { return a > b ? a : b; }
 
 template <int Capacity>
 inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves,
@@ -68,7 +70,7 @@ inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) 
     bool finite = std::isfinite(given.b[i]);
     for (int j = 0; j < n; ++j) {
       finite = finite && std::isfinite(given.plus[i][j]) && std::isfinite(given.minus[i][j]);
-      largest = std::fmax(largest, std::fmax(std::fabs(given.plus[i][j]), std::fabs(given.minus[i][j])));
+      largest = larger(largest, larger(std::fabs(given.plus[i][j]), std::fabs(given.minus[i][j])));
     }
     if (!finite) scaled.status = Status::invalid_input;
     row_exponent[i] = largest > 0.0 ? exponent_of(largest) : 0;
@@ -115,13 +117,12 @@ inline bool enforce(Search<Capacity>& search, const signed char* sigma) noexcept
   Trial<Capacity>& trial = search.trial;
   for (int round = 0; round < 2; ++round) {
     double kept[Capacity];
-    for (int k = 0; k < search.n; ++k) {
-      kept[k] = trial.x[k];
+    std::memcpy(kept, trial.x, sizeof kept);
+    for (int k = 0; k < search.n; ++k)
       if (!(sigma[k] * kept[k] > 0.0)) trial.x[k] = 0.0;
-    }
     check(search.scaled.problem, search.n, trial);
     if (trial.accurate) return true;
-    for (int k = 0; k < search.n; ++k) trial.x[k] = kept[k];
+    std::memcpy(trial.x, kept, sizeof kept);
     for (int step = 0; step < 2 && round == 0; ++step) refine(search.scaled.problem, search.n, trial);
   }
   return false;
@@ -134,7 +135,7 @@ inline bool settle(Search<Capacity>& search, const signed char* signs) noexcept 
   const Trial<Capacity>& trial = search.trial;
   double largest = 0.0;
   bool same = true;
-  for (int k = 0; k < search.n; ++k) largest = std::fmax(largest, std::fabs(trial.x[k]));
+  for (int k = 0; k < search.n; ++k) largest = larger(largest, std::fabs(trial.x[k]));
   for (int k = 0; k < search.n; ++k) {
     const double along = signs[k] * trial.x[k];
     if (along < -tie_window * largest) return false;
@@ -196,7 +197,7 @@ inline Found flip_least(Search<Capacity>& search, signed char* signs) noexcept {
     const bool accurate = try_signs(search, signs);
     if (!search.trial.regular) return Found::nothing;
     double x[Capacity];
-    for (int k = 0; k < n; ++k) x[k] = search.trial.x[k];
+    std::memcpy(x, search.trial.x, sizeof x);
     if (accurate && settle(search, signs)) return Found::solution;
     int least = 0;
     while (least < n && !(signs[least] * x[least] < 0.0)) ++least;
@@ -233,8 +234,8 @@ inline bool in_exact_range(double value) noexcept { return value == 0.0 || std::
 
 /// The trial of the first pattern with the signs sigma, + before - for its zeros, that solves the problem. All of them
 /// can be singular, as for |x1| + |x2| = 0: then the columns of sigma alone determine x.
-template <int Capacity>
-inline Status finish(Search<Capacity>& search, const Decided& decided) noexcept {
+template <int Capacity, int Order>
+inline Status finish(Search<Capacity>& search, const Decided<Order>& decided) noexcept {
   Trial<Capacity>& trial = search.trial;
   signed char signs[hlcp_max_order];
   bool regular = false;
@@ -246,7 +247,7 @@ inline Status finish(Search<Capacity>& search, const Decided& decided) noexcept 
     if (trial.regular && enforce(search, decided.sigma)) return Status::ok;
   }
   if (decided.frail) return regular ? Status::inaccurate : Status::singular_constraints;
-  for (int k = 0; k < search.n; ++k) trial.x[k] = decided.x[k];
+  for (int k = 0; k < Order; ++k) trial.x[k] = decided.x[k];
   check(search.scaled.problem, search.n, trial);
   return trial.accurate ? Status::ok : Status::inaccurate;
 }
@@ -257,7 +258,8 @@ inline void decide_small(Search<Capacity>& search, const signed char* first, con
                          NotUnique policy, HlcpSolution<Capacity>& solution) noexcept {
   const Hlcp<Capacity>& problem = search.scaled.problem;
   const int n = search.n;
-  Small small = {{}, {}, {}, n, !search.scaled.lost};
+  constexpr int order = Capacity < decidable ? Capacity : decidable;
+  Small<order> small = {{}, {}, {}, n, !search.scaled.lost};
   for (int i = 0; i < n; ++i) {
     small.b[i] = problem.b[i];
     small.within_range = small.within_range && in_exact_range(small.b[i]);
@@ -267,7 +269,7 @@ inline void decide_small(Search<Capacity>& search, const signed char* first, con
       small.within_range = small.within_range && in_exact_range(small.plus[i][j]) && in_exact_range(small.minus[i][j]);
     }
   }
-  const Decided decided = decide(small, first, second);
+  const Decided<order> decided = decide(small, first, second);
   search.solves += decided.determinants;
   const bool several = decided.decision == Decision::several;
   if (decided.decision == Decision::none) return refuse(solution, Status::no_solution, search.solves);
@@ -325,8 +327,8 @@ inline void enter(Search<Capacity>& search, const signed char* signs, bool accur
   double largest = 0.0;
   double distance = 0.0;
   for (int k = 0; k < search.n; ++k) {
-    largest = std::fmax(largest, std::fabs(trial.x[k]));
-    distance = std::fmax(distance, std::fabs(trial.x[k] - census.x[k]));
+    largest = larger(largest, std::fabs(trial.x[k]));
+    distance = larger(distance, std::fabs(trial.x[k] - census.x[k]));
   }
   if (census.solutions == 0) {
     std::memcpy(census.x, trial.x, sizeof census.x);
@@ -387,7 +389,7 @@ inline void search_large(Search<Capacity>& search, signed char* signs, NotUnique
   bool proven = contracts(problem, search.n, search.trial);
   if (!clear(search.trial.x, search.n, signs)) {
     double largest = 0.0;
-    for (int k = 0; k < search.n; ++k) largest = std::fmax(largest, std::fabs(search.trial.x[k]));
+    for (int k = 0; k < search.n; ++k) largest = larger(largest, std::fabs(search.trial.x[k]));
     signed char start[hlcp_max_order];
     for (int k = 0; k < search.n; ++k) {
       const bool tie = std::fabs(search.trial.x[k]) <= tie_window * largest;

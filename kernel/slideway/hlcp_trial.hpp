@@ -32,31 +32,19 @@ inline constexpr Word sign_bit = Word{1} << 63;
 /// 2^k for -1022 <= k <= 1023.
 inline double power_of_two(int k) noexcept { return real(static_cast<Word>(k + 1023) << 52); }
 
-/// Rows whose size is in [2^-200, 2^200] and right sides of magnitude up to 2^200 are solved as they are, others are
-/// scaled first.
-inline unsigned sizable(double size) noexcept { return bits(size) - bits(0x1p-200) <= bits(0x1p200) - bits(0x1p-200); }
-
-/// |value| <= 2^200 or zero or tiny; false for NaN.
-inline unsigned bounded(double value) noexcept { return (bits(value) & ~sign_bit) <= bits(0x1p200); }
-
 /// A component below 2^-20 of the largest may owe its sign to rounding; then the signs are decided anew from a start
-/// that the data alone determine. Why 2^-20: the certificate shows |W^-1| R <= 2^22 for every matrix W between A+ and
-/// A-, R the row sizes, and two vectors with the residual allowed differ by at most 2 * 5 (n + 1) 2^-53 * 2 * 2^22
-/// max|x| <= 2^-20.6 max|x| for n <= 32.
+/// that the data alone determine. Why 2^-20: the proofs of uniqueness show |W^-1| R <= 2^22 for every matrix W between
+/// A+ and A-, R the row sizes, and two vectors with the residual allowed differ by at most 2 * 5 (n + 1) 2^-53 * 2 *
+/// 2^22 max|x| <= 2^-20.6 max|x| for n <= 32. A wider window costs solves, a narrower one bits.
 inline constexpr double tie_window = 0x1p-20;
-inline constexpr double allowance =
-    0x1p-21;  ///< of the row sizes, added to the perturbation that the certificate covers
-inline constexpr double contracting =
-    1.0 - 0x1p-20;  ///< room for the roundings in the bound itself, at most 6 n + 6 of them
 
 /// One sign pattern: W(s), its factors, and what follows from them.
 template <int Capacity>
 struct Trial {
-  static constexpr int stride =
-      Capacity + Capacity % 2;              // rows and what belongs to rows in pairs; the odd one out is zero
-  alignas(16) double w[Capacity][stride];   // W(s)
-  alignas(16) double lu[Capacity][stride];  // L below, U on and above the diagonal, rows in the order `row`
-  alignas(16) double side[Capacity][2];     // right side | bound: what L and U are applied to, in two lanes
+  static constexpr int stride = Capacity + Capacity % 2;  // everything goes in pairs; the odd one out is zero
+  alignas(16) double w[Capacity][stride];                 // W(s)
+  alignas(16) double lu[Capacity][stride];                // L below, U on and above the diagonal, rows as in `row`
+  alignas(16) double side[Capacity][2];                   // right side | bound: L and U act on both, in two lanes
   alignas(16) double x[stride];
   // Of row i in W(s), and at least that in every other pattern: sum_j |w_ij| + |a+_ij - a-_ij|.
   alignas(16) double size[stride];
@@ -124,6 +112,10 @@ template <class Count, class Body>
 /// reaches 2 (n + 1) 2^-53 (Skeel 1980; Higham 2002, theorem 12.4), the evaluation adds (n + 1) 2^-53, one more of
 /// these is slack. The true residual is then within 5 (n + 1) 2^-53.
 inline double residual_limit(int n) noexcept { return 4.0 * (n + 1) * 0x1p-53; }
+
+/// Of the row sizes, added to the perturbation that the proof of uniqueness covers: half of it pays for the errors of L
+/// and U, half shows |W^-1| R <= 2^22 (see tie_window).
+inline constexpr double allowance = 0x1p-21;
 
 /// Row i of W(signs) into w and lu; returns sum_j |w_ij| and sum_j |a+_ij - a-_ij|, each in two lanes.
 template <int Capacity, class Count>
@@ -334,8 +326,8 @@ inline bool pivots_sound(const Trial<Capacity>& trial, int n) noexcept {
   return true;
 }
 
-/// Whether max_k |x_k| is nowhere near a tie: every s_k x_k exceeds tie_window * max |x|. One comparison also tests the
-/// signs, and fails for NaN.
+/// Whether x has the signs and no component is near a tie: every s_k x_k exceeds tie_window * max |x| (or x = 0). False
+/// for NaN.
 template <class Count>
 inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
   double largest = 0.0;
@@ -427,147 +419,6 @@ inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* s
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
   return trial.accurate;
-}
-
-/// The rounding errors |L U - P W| of a row are at most this times its size: 3 n 2^-53 sum_k |l_ik| sum_j |u_kj|, where
-/// weighted |l_ik| is at most 1.
-template <int Capacity>
-inline double lu_error(const Trial<Capacity>& trial, int n) noexcept {
-  double sum = 0.0;
-  for (int k = 0; k < n; ++k)
-    for (int j = k; j < n; ++j) sum += std::fabs(trial.lu[k][j]) * trial.weight[k];
-  return 3.0 * n * 0x1p-53 * sum;
-}
-
-/// z = M(U)^-1 M(L)^-1 P v, an upper bound of |W^-1| v for v >= 0; returns its largest component. n^2 multiplications.
-/// Row by row, the newest component last: only one multiplication and one addition wait for it.
-template <int Capacity, class Count>
-inline double reach_of(const Trial<Capacity>& trial, Count n, const double* v, double* z) noexcept {
-  double y[Capacity];
-  double newest = 0.0;
-  const auto forward_row = [&](int i) __attribute__((always_inline)) {
-    const auto& l = trial.lu[i];
-    Pair pairs = {v[trial.row[i]], 0.0};
-    for (int k = 0; k + 2 < i; k += 2) pairs += magnitude(load(&l[k])) * gather(&y[k]);
-    double sum = pairs[0] + pairs[1];
-    if (i >= 2 && i % 2 == 0) sum += std::fabs(l[i - 2]) * y[i - 2];
-    if (i >= 1) sum += std::fabs(l[i - 1]) * newest;
-    y[i] = newest = sum;
-  };
-  each(n, forward_row);
-  double largest = 0.0;
-  const auto backward_row = [&](int solved) __attribute__((always_inline)) {
-    const int i = n - 1 - solved;
-    const auto& u = trial.lu[i];
-    Pair pairs = {y[i], 0.0};
-    for (int j = n - 2; j >= i + 2; j -= 2) pairs += magnitude(gather(&u[j])) * gather(&z[j]);
-    double sum = pairs[0] + pairs[1];
-    if (solved >= 2 && solved % 2 == 0) sum += std::fabs(u[i + 2]) * z[i + 2];
-    const double inverse = std::fabs(trial.inverse[i]);
-    sum *= inverse;
-    if (solved >= 1) sum += (std::fabs(u[i + 1]) * inverse) * newest;
-    z[i] = newest = sum;
-    largest = sum > largest ? sum : largest;
-  };
-  each(n, backward_row);
-  return largest;
-}
-
-/// v = (|A+ - A-| + allowance) u for 0 <= u <= 1.
-template <int Capacity, class Count>
-inline void perturb(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial, const double* u,
-                    double* v) noexcept {
-  for (int i = 0; i < n; ++i) {
-    Pair sum = {allowance * trial.size[i], 0.0};
-    for (int j = 0; j + 1 < n; j += 2)
-      sum += magnitude(load(&problem.plus[i][j]) - load(&problem.minus[i][j])) * gather(&u[j]);
-    if (n % 2 != 0) sum[1] += std::fabs(problem.plus[i][n - 1] - problem.minus[i][n - 1]) * u[n - 1];
-    v[i] = sum[0] + sum[1];
-  }
-}
-
-/// Whether |W^-1| (|A+ - A-| + allowance) u < u for some u > 0, so that no matrix between A+ and A- is singular
-/// (spectral radius below 1: Rohn) and the W-property holds: u = 1 was tried with the solve, here follow two steps of
-/// power iteration. O(n^2) each. If a step increases every component no u can do (Collatz-Wielandt).
-template <int Capacity, class Count>
-inline bool contracts(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
-  if (n > 16 && !(lu_error(trial, n) <= 0.5 * allowance)) return false;  // to 16, growth of 2^(n-1) is allowed
-  if (trial.reach <= contracting) return true;
-  double u[Capacity];
-  double z[Capacity];
-  double v[Capacity];
-  for (int i = 0; i < n; ++i) {
-    u[i] = 1.0;
-    z[i] = trial.side[i][1];
-  }
-  double largest = trial.reach;
-  for (int step = 0; step < 2; ++step) {
-    bool hopeless = true;
-    for (int i = 0; i < n && hopeless; ++i) hopeless = z[i] >= u[i];
-    if (hopeless || !(largest < HUGE_VAL)) return false;
-    const double unit = 1.0 / largest;
-    for (int i = 0; i < n; ++i) u[i] = z[i] * unit;
-    perturb(problem, n, trial, u, v);
-    largest = reach_of(trial, n, v, z);
-    bool below = true;
-    for (int i = 0; i < n && below; ++i) below = z[i] <= contracting * u[i];
-    if (below) return true;
-  }
-  return false;
-}
-
-/// Whether all determinants of W(s), n = 3 or 4, have one strict sign beyond rounding errors: the column W-property
-/// (Sznajder & Gowda 1995). Laplace expansion along pairs of rows: every 2x2 minor is shared by four patterns. n = 3
-/// has a fourth row and column of the unit matrix. Each term has at most 3 + 5 roundings, and the product of the row
-/// sizes bounds the sum of all terms.
-template <int Capacity>
-inline bool determinants_agree(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
-  static_assert(Capacity >= 3, "rows and columns exist");
-  double column[4][2][4] = {};  // of A+ and A-, each from top to bottom
-  column[3][0][3] = column[3][1][3] = 1.0;
-  double size = 1.0;
-  for (int i = 0; i < n; ++i) {
-    size *= trial.size[i];
-    for (int j = 0; j < n; ++j) {
-      column[j][0][i] = problem.plus[i][j];
-      column[j][1][i] = problem.minus[i][j];
-    }
-  }
-  constexpr int left[6] = {0, 0, 0, 1, 1, 2};
-  constexpr int right[6] = {1, 2, 3, 2, 3, 3};
-  double upper[6][4];
-  double lower[6][4];
-  for (int pair = 0; pair < 6; ++pair)
-    for (int signs = 0; signs < 4; ++signs) {
-      const double* a = column[left[pair]][signs & 1];
-      const double* c = column[right[pair]][signs >> 1];
-      upper[pair][signs] = a[0] * c[1] - a[1] * c[0];
-      lower[pair][signs] = a[2] * c[3] - a[3] * c[2];
-    }
-  double least = HUGE_VAL;
-  double most = -HUGE_VAL;
-  for (int code = 0; code < (1 << n); ++code) {
-    const auto signs = [&](int pair) { return ((code >> left[pair]) & 1) | (((code >> right[pair]) & 1) << 1); };
-    double det = upper[0][signs(0)] * lower[5][signs(5)];
-    det -= upper[1][signs(1)] * lower[4][signs(4)];
-    det += upper[2][signs(2)] * lower[3][signs(3)];
-    det += upper[3][signs(3)] * lower[2][signs(2)];
-    det -= upper[4][signs(4)] * lower[1][signs(1)];
-    det += upper[5][signs(5)] * lower[0][signs(0)];
-    least = det < least ? det : least;
-    most = det > most ? det : most;
-  }
-  const double doubt = 0x1p-48 * size;
-  return least > doubt || most < -doubt;
-}
-
-/// Whether uniqueness is proved for the trial of clear signs: by contraction, for n <= 4 else by the determinants,
-/// where it must be shown separately that x owes no sign to rounding (see tie_window).
-template <int Capacity, class Count>
-inline bool proves(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
-  if (contracts(problem, n, trial)) return true;
-  double z[Capacity];
-  return n <= 4 && reach_of(trial, n, trial.size, z) <= 0x1p22 && determinants_agree(problem, n, trial);
 }
 
 /// Solves with W(signs), n = 1 and n = 2, by the formulas that solve_one and solve_pair use, so that the bits agree.

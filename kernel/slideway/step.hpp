@@ -210,6 +210,7 @@ class BasicStepper {
   Status stage(const State& before, double t, double tau, double weight, const double* q, const double* v,
                const Inputs& inputs, Next& next, Reaction& r, Report& report) const noexcept {
     const Status status = evaluate(t + tau, tau, q, v, inputs, next, r, report);
+    if (status != Status::ok) return status;
     report.energy.work += weight * r.power.work;
     report.energy.dissipated += weight * r.power.dissipated;
     report.energy.constraint_work += weight * r.power.constraint_work;
@@ -219,7 +220,7 @@ class BasicStepper {
       const int c = source.tables.rough_contact[m];
       next.force_reversed[c] |= before.sign[c] * next.sign[c] < 0;
     });
-    return status;
+    return Status::ok;
   }
 
   /// With a_i the accelerations of the four stages: v + h/6 (a1 + 2 a2 + 2 a3 + a4), and since the stages' speeds are
@@ -229,19 +230,23 @@ class BasicStepper {
     constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
     double q[n], v[n], sum[n], weighted_sum[n];
     Reaction r;
-    for_each<Source, Size::coordinates>(source.tables.coordinates,
-                                        [&](int j) SLIDEWAY_FOLD { sum[j] = weighted_sum[j] = 0; });
+    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
+      q[j] = state.q[j];
+      v[j] = state.v[j];
+      sum[j] = weighted_sum[j] = r.acceleration[j] = 0;
+    });
     for (int k = 0; k < 4; ++k) {
       const double tau = node[k] * h;
-      for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        q[j] = k == 0 ? state.q[j] : state.q[j] + tau * v[j];
-        v[j] = k == 0 ? state.v[j] : state.v[j] + tau * r.acceleration[j];
-      });
       const Status status = stage(state, t, tau, weight[k] * (h / 6), q, v, inputs, next, r, report);
       if (status != Status::ok) return status;
+      const double reach = k < 3 ? node[k + 1] * h : 0;
       for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        weighted_sum[j] += weight[k] * r.acceleration[j];
-        if (k < 3) sum[j] += r.acceleration[j];
+        const double a = r.acceleration[j];
+        weighted_sum[j] += weight[k] * a;
+        if (k == 3) return;
+        sum[j] += a;
+        q[j] = state.q[j] + reach * v[j];
+        v[j] = state.v[j] + reach * a;
       });
     }
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
@@ -254,6 +259,7 @@ class BasicStepper {
   Status step_euler(const State& state, double t, double h, const Inputs& inputs, Next& next,
                     Report& report) const noexcept {
     Reaction r;
+    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD { r.acceleration[j] = 0; });
     const Status status = stage(state, t, 0, h, state.q, state.v, inputs, next, r, report);
     if (status != Status::ok) return status;
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
