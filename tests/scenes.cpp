@@ -206,11 +206,15 @@ TEST_P(SceneRun, EndsWhereItIsKnownToEndAndKeepsItsBooks) {
   RecordProperty("v", testing::PrintToString(worst_v));
 }
 
-TEST_P(SceneRun, EndsThereKinematicallyIfItIsFullyDriven) {
+TEST_P(SceneRun, EndsThereKinematicallyIfItIsFullyDrivenAndIsRefusedElse) {
   const slideway::io::SceneFile file = read(GetParam().scene);
   Stepper stepper(file.scene);
-  if (!fully_driven(stepper.source)) GTEST_SKIP() << "not fully driven";
   stepper.method = Method::kinematic;
+  if (!fully_driven(stepper.source)) {
+    auto state = stepper.start();
+    EXPECT_EQ(stepper.step(state, file.run.dt).status, Status::invalid_input);
+    return;
+  }
   const History history = run(file, stepper);
   EXPECT_EQ(history.status, Status::ok) << sentence(history.status);
   EXPECT_EQ(history.uniqueness, Uniqueness::certified);
