@@ -78,6 +78,19 @@ TEST(StepRefuses, DtThatIsNotPositiveAndFinite) {
   }
 }
 
+TEST(StepRefuses, ScenesWithDefects) {
+  Scene scene = shipped("crank_rocker");
+  scene.body[1].parent = 7;            // no such body
+  scene.guides = RunSize::guides + 1;  // more than there is room for
+  const Stepper stepper(scene);
+  expect_refusal(stepper, stepper.start(), Status::invalid_input);
+  Reaction reaction;
+  EXPECT_EQ(stepper.reaction(stepper.start(), {}, reaction).status, Status::invalid_input);
+  State state = stepper.start();
+  EXPECT_EQ(stepper.project(state).status, Status::invalid_input);
+  EXPECT_EQ(stepper.kinetic_energy(state), 0);
+}
+
 TEST(StepRefuses, StatesThatAreNotFinite) {
   for (const char* scene : {"crank_rocker", "crank_rocker_free", "four_bar_chain"}) {
     for (const Method method : {Method::euler, Method::rk4}) {

@@ -52,7 +52,7 @@ class BasicStepper {
     const double start = same_dt ? state.start : state.time();
     const long long steps = same_dt ? state.steps : 0;
     const double t = start + static_cast<double>(steps) * dt;
-    if (!(dt > 0) || !detail::finite(t)) {
+    if (!source.sound || !(dt > 0) || !detail::finite(t)) {
       report.status = Status::invalid_input;
       return report;
     }
@@ -79,7 +79,7 @@ class BasicStepper {
   /// Forces and accelerations at the state. r is valid when the report's status is ok.
   Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
     Report report;
-    if (!detail::finite(state.time())) {
+    if (!source.sound || !detail::finite(state.time())) {
       report.status = Status::invalid_input;
       return report;
     }
@@ -97,8 +97,9 @@ class BasicStepper {
   Report project(State& state, const Inputs& inputs = {}) const noexcept {
     Report report;
     State next = state;
-    report.status = finite(state, inputs) ? slideway::project(source, next.time(), 0, inputs, next.q, next.v)
-                                          : Status::invalid_input;
+    report.status = source.sound && finite(state, inputs)
+                        ? slideway::project(source, next.time(), 0, inputs, next.q, next.v)
+                        : Status::invalid_input;
     if (report.status == Status::ok) state = next;
     return report;
   }

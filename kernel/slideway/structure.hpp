@@ -292,19 +292,22 @@ template <const auto& scene_>
 struct CompileTime {
   using Size = typename std::remove_cv_t<std::remove_reference_t<decltype(scene_)>>::Size;
   static_assert(defects(scene_).count == 0, "the scene has defects: slideway::defects(scene) lists them");
-  static constexpr bool folds = true;
+  static constexpr bool folds = true, sound = true;
   static constexpr Tables<Size> tables = derive(scene_);
   static constexpr const Scene<Size>& scene = scene_;
 };
 
-/// A scene that is known when the program runs, with room for `Size_`.
+/// A scene that is known when the program runs, with room for `Size_`. One with defects is not taken: it counts as
+/// empty and not sound, and every step refuses.
 template <class Size_>
 struct RunTime {
   using Size = Size_;
   static constexpr bool folds = false;
+  bool sound;
   Scene<Size> scene;
   Tables<Size> tables;
-  explicit constexpr RunTime(const Scene<Size>& data) noexcept : scene(data), tables(derive(data)) {}
+  explicit constexpr RunTime(const Scene<Size>& data) noexcept
+      : sound(defects(data).count == 0), scene(sound ? data : Scene<Size>{}), tables(derive(scene)) {}
 };
 
 /// Longest loop that is written out. Beyond it the compiler takes minutes: see docs/decisions.md.
