@@ -1,0 +1,122 @@
+// The report is loaded by a real browser, which finds no error in it and nothing to fetch.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A directory of its own, removed at the end.
+struct Directory {
+  fs::path path;
+  Directory() {
+    std::string pattern = (fs::temp_directory_path() / "slideway_report_XXXXXX").string();
+    path = ::mkdtemp(pattern.data());
+  }
+  ~Directory() { fs::remove_all(path); }
+};
+
+std::string output_of(const std::string& command) {
+  std::string output;
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return output;
+  std::array<char, 1 << 16> block;
+  for (std::size_t size; (size = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    output.append(block.data(), size);
+  ::pclose(pipe);
+  return output;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// The report of `slideway run` with these arguments.
+std::string report_of(const Directory& directory, const std::string& arguments) {
+  const fs::path file = directory.path / "report.html";
+  output_of("'" SLIDEWAY_COMMAND "' run " + arguments + " --quiet --report '" + file.string() + "' 2>&1");
+  return text_of(file);
+}
+
+bool browser_is_here() { return std::system("command -v chromium > /dev/null 2>&1") == 0; }
+
+/// The page's document after its scripts have run, in a window of this width.
+std::string document_of(const Directory& directory, const std::string& page, int width) {
+  const fs::path file = directory.path / "page.html";
+  std::ofstream(file) << page;
+  return output_of(
+      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+      "--disable-background-networking --disable-component-update --disable-sync --user-data-dir='" +
+      (directory.path / "profile").string() + "' --window-size=" + std::to_string(width) +
+      ",1000 --virtual-time-budget=5000 --dump-dom 'file://" + file.string() + "' 2> /dev/null");
+}
+
+std::string attribute(const std::string& document, const std::string& name) {
+  std::smatch match;
+  const std::string head = document.substr(0, 4000);
+  return std::regex_search(head, match, std::regex("<html[^>]* " + name + "=\"([^\"]*)\"")) ? match[1].str() : "";
+}
+
+class Report : public testing::TestWithParam<const char*> {};
+
+TEST_P(Report, IsDrawnWithoutAnError) {
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const Directory directory;
+  const std::string page = report_of(directory, GetParam());
+  ASSERT_FALSE(page.empty());
+  for (const int width : {400, 1600}) {
+    const std::string document = document_of(directory, page, width);
+    EXPECT_EQ(attribute(document, "data-ready"), "ok") << width << " px";
+    EXPECT_NE(attribute(document, "data-charts").find("energy"), std::string::npos) << width << " px";
+    EXPECT_NE(document.find("<canvas"), std::string::npos) << "charts are drawn, " << width << " px";
+    EXPECT_NE(document.find("<svg"), std::string::npos) << "the mechanism is drawn, " << width << " px";
+  }
+}
+
+TEST_P(Report, FetchesNothing) {
+  const Directory directory;
+  const std::string page = report_of(directory, GetParam());
+  ASSERT_FALSE(page.empty());
+  EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"?https?:")));
+  EXPECT_EQ(page.find("@import"), std::string::npos);
+}
+
+// Smooth, several guides, pins and a spring alone, many contacts.
+INSTANTIATE_TEST_SUITE_P(Runs, Report,
+                         testing::Values("crank_rocker", "quick_return", "squeezer", "v_engine_16 --duration 5e-3"),
+                         [](const auto& run) {
+                           const std::string arguments = run.param;
+                           return arguments.substr(0, arguments.find(' '));
+                         });
+
+TEST(ReportOfARefusal, SaysWhy) {
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const Directory directory;
+  const std::string page = report_of(directory, "overhung_slider --set guide.way.mu=0.9");  // refused at once
+  const std::string document = document_of(directory, page, 800);
+  EXPECT_EQ(attribute(document, "data-ready"), "ok");
+  EXPECT_NE(document.find("contact forces satisfy the equations"), std::string::npos);
+}
+
+TEST(ReportCheck, SeesAScriptThatFails) {
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const Directory directory;
+  std::string page = report_of(directory, "crank_rocker --duration 0.1");
+  const std::size_t end = page.rfind("</body>");
+  ASSERT_NE(end, std::string::npos);
+  page.insert(end, "<script>nothing.of.the.kind();</script>");
+  EXPECT_EQ(attribute(document_of(directory, page, 800), "data-ready"), "failed");
+}
+
+}  // namespace
