@@ -22,6 +22,9 @@
 #include <utility>
 #include <vector>
 
+// Doubles are promoted on purpose: what is compared with is computed in long double.
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 namespace {
 
 using slideway::Hlcp;
