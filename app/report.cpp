@@ -139,7 +139,8 @@ Json inputs(const Recording& recording) {
 Json scene(const Recording& recording) {
   const io::SceneFile& file = recording.file;
   Json joint_springs = Json::array();
-  for (int s = 0; s < file.scene.joint_springs; ++s) joint_springs.push_back({{"body", file.scene.joint_spring[s].body}});
+  for (int s = 0; s < file.scene.joint_springs; ++s)
+    joint_springs.push_back({{"body", file.scene.joint_spring[s].body}});
   return {{"name", file.name},
           {"hash", file.hash},
           {"settings", file.settings},
