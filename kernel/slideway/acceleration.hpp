@@ -8,10 +8,10 @@
 
 namespace slideway {
 
+/// The caller's choices that an evaluation follows.
 struct Solving {
-  Gains gains;
-  HlcpOptions hlcp;
-  bool at_start;  ///< of a step: a guide whose speed is all rounding counts as at rest
+  Gains gains;       ///< Baumgarte's; a stepper starts with its scene's
+  HlcpOptions hlcp;  ///< what to do with several solutions, and how long to search
 };
 
 template <class Size>
@@ -296,11 +296,12 @@ SLIDEWAY_INLINE int undecided_guide(const Source& source, const signed char* mod
 ///
 /// mode, in and out: slip direction per guide; replaced by the sign of the sliding speed where that is not zero.
 /// sign, in and out: of each contact force; the solver's first guess, then the answer's.
-/// tau is the time since the step's start, for live inputs. r is valid only when the status is ok. `report` keeps the
-/// extremes of all calls. Cost: one HLCP and O(bodies + contacts^2).
+/// tau is the time since the step's start, for live inputs. at_start: drift is measured, and a guide whose sliding
+/// speed is all rounding counts as at rest. r is valid only when the status is ok. `report` keeps the extremes of all
+/// calls. Cost: one HLCP and O(bodies + contacts^2).
 template <class Source, class Size = typename Source::Size>
 Status accelerate(const Source& source, double t, double tau, const double* __restrict q, const double* __restrict v,
-                  const Inputs<Size>& inputs, const Solving& solving, signed char* __restrict mode,
+                  const Inputs<Size>& inputs, const Solving& solving, bool at_start, signed char* __restrict mode,
                   signed char* __restrict sign, Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
@@ -312,11 +313,11 @@ Status accelerate(const Source& source, double t, double tau, const double* __re
   r.drift_position = r.drift_velocity = 0;
   prescribe(source, q, v, t, inputs, tau, solving.gains, w.prescribed, r.drift_position, r.drift_velocity);
   kinematics(source, q, v, w.prescribed, w.kinematics);
-  place_contacts(source, w.kinematics, solving.gains, w.friction, r);
+  place_contacts(source, w.kinematics, solving.gains, at_start, w.friction, r);
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
     if (r.slip[g] > 0) mode[g] = 1;
     if (r.slip[g] < 0) mode[g] = -1;
-    if (solving.at_start && at_rest(source, w, g, v, r.slip[g])) mode[g] = 0;
+    if (at_start && at_rest(source, w, g, v, r.slip[g])) mode[g] = 0;
   });
   report.guide = undecided_guide(source, mode);
   if (report.guide != none) return Status::invalid_input;
@@ -359,7 +360,7 @@ Status accelerate(const Source& source, double t, double tau, const double* __re
   const bool opposes = rub(source, w.friction, r);
   const double residual = check(source, v, w, r);
   report.residual = residual > report.residual ? residual : report.residual;
-  if (solving.at_start) {
+  if (at_start) {
     report.drift_position = r.drift_position;
     report.drift_velocity = r.drift_velocity;
   }

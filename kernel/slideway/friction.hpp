@@ -167,10 +167,10 @@ SLIDEWAY_INLINE double squared_length(const Source& source, const double* n, con
   return inner(source, n, n) + s * (2 * inner(source, n, e) + s * inner(source, e, e));
 }
 
-/// Geometry of all contacts, the targets c, the sliding speeds and the drift. Linear in the contacts.
+/// Geometry of all contacts, the targets c, the sliding speeds and, if `measure`, the drift. Linear in the contacts.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>& k, Gains gains, Friction<Size>& fr,
-                                    Reaction<Size>& r) noexcept {
+SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>& k, Gains gains, bool measure,
+                                    Friction<Size>& fr, Reaction<Size>& r) noexcept {
   const auto& table = source.tables;
   for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
     Sliding& s = fr.sliding[g];
@@ -178,6 +178,7 @@ SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>
     r.slip[g] = s.slip[0];
     for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
       fr.target[table.first_contact[g] + i] = -s.gamma[i] - gains.alpha * s.Phi_rate[i] - gains.beta * s.Phi[i];
+      if (!measure) return;
       r.drift_position = larger(r.drift_position, std::fabs(s.Phi[i]));
       r.drift_velocity = larger(r.drift_velocity, std::fabs(s.Phi_rate[i]));
     });

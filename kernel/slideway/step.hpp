@@ -15,8 +15,9 @@ constexpr const char* name(Method method) noexcept {
   return method == Method::euler ? "euler" : method == Method::rk4 ? "rk4" : "kinematic";
 }
 
+/// Steps a scene. Its options are public members, Solving's among them; stepping changes none.
 template <class Source>
-class BasicStepper {
+class BasicStepper : public Solving {
  public:
   using Size = typename Source::Size;
   using State = slideway::State<Size>;
@@ -25,12 +26,12 @@ class BasicStepper {
 
   Source source;
   Method method = Method::rk4;
-  HlcpOptions hlcp{};
-  Gains gains{source.scene.alpha, source.scene.beta};
   double drift_limit = 1e-3;  ///< largest |Phi|, |phi| that a step may meet, in lengths of the scene (or rad)
 
   template <class... Data>
-  explicit constexpr BasicStepper(const Data&... data) noexcept : source(data...) {}
+  explicit constexpr BasicStepper(const Data&... data) noexcept : source(data...) {
+    gains = {source.scene.alpha, source.scene.beta};
+  }
 
   /// The scene's start. Slip directions and contact signs are found by the first step.
   constexpr State start() const noexcept {
@@ -204,7 +205,7 @@ class BasicStepper {
   /// accelerate(), with mode and sign of `at` as guesses and answers.
   Status evaluate(double t, double tau, const double* q, const double* v, const Inputs& inputs, Next& at, Reaction& r,
                   Report& report) const noexcept {
-    return accelerate(source, t, tau, q, v, inputs, Solving{gains, hlcp, tau == 0}, at.mode, at.sign, r, report);
+    return accelerate(source, t, tau, q, v, inputs, *this, tau == 0, at.mode, at.sign, r, report);
   }
 
   /// The same within a step: its share of the energies, and what has reversed.
