@@ -216,7 +216,7 @@ inline Found find(Search<Capacity>& search, signed char* signs) noexcept {
 /// Hands out the trial's x, unscaled; refuses what does not fit into normal numbers.
 template <int Capacity>
 inline void deliver(const Search<Capacity>& search, Uniqueness uniqueness, HlcpSolution<Capacity>& solution) noexcept {
-  double x[Capacity];
+  double x[Capacity] = {};
   bool good = true;
   for (int k = 0; k < search.n; ++k) {
     const double scaled = search.trial.x[k];
