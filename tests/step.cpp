@@ -67,6 +67,21 @@ State started(const Stepper& stepper, int steps = 10, double dt = 1e-3) {
 
 // --- refusals --------------------------------------------------------------------------------------------------------
 
+TEST(Events, AReversalInTheFirstStepIsCountedWhereThereIsFriction) {
+  Scene scene = shipped("overhung_slider");
+  scene.body[0].v[0] = 5e-4;  // stops after half a step
+  Stepper rough(scene);
+  State state = rough.start();
+  EXPECT_GE(rough.step(state, 1e-3).unlocated_events, 1);
+  scene.guide[0].mu = scene.guide[0].mu_static = 0;
+  scene.body[0].v[0] = -1e-3;
+  scene.gravity = {5, -10};  // back and forth, smoothly
+  const Stepper smooth(scene);
+  state = smooth.start();
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(smooth.step(state, 1e-3).unlocated_events, 0);
+  EXPECT_GT(state.v[0], 0);
+}
+
 TEST(StepRefuses, DtThatIsNotPositiveAndFinite) {
   for (const Method method : {Method::euler, Method::rk4, Method::kinematic}) {
     Stepper stepper(shipped("crank_rocker"));
@@ -89,6 +104,53 @@ TEST(StepRefuses, ScenesWithDefects) {
   State state = stepper.start();
   EXPECT_EQ(stepper.project(state).status, Status::invalid_input);
   EXPECT_EQ(stepper.kinetic_energy(state), 0);
+}
+
+/// A body on a revolute joint at (0, 1) m, both contacts of its guide on a line of the ground: one coordinate, two
+/// rows.
+Scene twice_held(double angle, double rate) {
+  Scene scene;
+  scene.gravity = {0, -9.81};
+  scene.bodies = scene.guides = 1;
+  scene.body[0].at = {0, 1};
+  scene.body[0].mass = 1;
+  scene.body[0].com = {0.3, 0};
+  scene.body[0].inertia = 0.1;
+  scene.body[0].q[0] = angle;
+  scene.body[0].v[0] = rate;
+  scene.guide[0].slider = 0;
+  scene.guide[0].contacts = 2;
+  scene.guide[0].contact[0] = {0.2, 0};
+  scene.guide[0].contact[1] = {0.7, 0.1};
+  scene.guide[0].mu = scene.guide[0].mu_static = 0.2;
+  return scene;
+}
+
+TEST(StepRefuses, ContactsOnASliderThatCannotTurnInEveryPose) {
+  for (int k = 0; k < 500; ++k) {
+    Stepper stepper(twice_held(0.0123 * k, 0.5 + 1e-3 * k));
+    stepper.drift_limit = 1e9;  // the poses are off the line: rank is what is asked
+    Reaction reaction;
+    EXPECT_NE(stepper.reaction(stepper.start(), {}, reaction).status, Status::ok) << k;
+  }
+}
+
+TEST(StepRefuses, AnInputThatIsNotANumberWhereOnlyADriveFeelsIt) {
+  Scene scene;
+  scene.bodies = scene.drives = scene.loads = scene.inputs = 1;
+  scene.body[0].mass = 1;
+  scene.body[0].inertia = 1;
+  scene.body[0].v[0] = 1;
+  scene.drive[0].c[1] = 1;
+  scene.load[0].torque = 1;
+  scene.load[0].input = 0;
+  Inputs inputs;
+  inputs.input[0].value = nan;
+  for (const Method method : {Method::euler, Method::rk4, Method::kinematic}) {
+    Stepper stepper(scene);
+    stepper.method = method;
+    expect_refusal(stepper, stepper.start(), Status::invalid_input, 1e-3, inputs);
+  }
 }
 
 TEST(StepRefuses, StatesThatAreNotFinite) {

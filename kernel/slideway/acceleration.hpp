@@ -29,7 +29,6 @@ struct Work {
 /// the couple along lambda_1 - across friction_1.
 struct GuideForce {
   double normal, friction, couple;
-  double Lambda;  ///< sum of |lambda|
 };
 
 template <class Source, class Size = typename Source::Size>
@@ -38,10 +37,10 @@ SLIDEWAY_INLINE GuideForce guide_force(const Source& source, const Friction<Size
   const int c = source.tables.first_contact[g];
   const double sigma = source.tables.is_rough[g] ? fr.sigma[g] : 0;
   const double size = std::fabs(r.lambda[c]);
-  if (source.scene.guide[g].contacts == 1) return {r.lambda[c], sigma * size, 0, size};
-  const double size_1 = std::fabs(r.lambda[c + 1]), Lambda = size + size_1;
-  return {r.lambda[c] + r.lambda[c + 1], sigma * Lambda,
-          fr.sliding[g].along * r.lambda[c + 1] - fr.sliding[g].across * (sigma * size_1), Lambda};
+  if (source.scene.guide[g].contacts == 1) return {r.lambda[c], sigma * size, 0};
+  const double size_1 = std::fabs(r.lambda[c + 1]);
+  return {r.lambda[c] + r.lambda[c + 1], sigma * (size + size_1),
+          fr.sliding[g].along * r.lambda[c + 1] - fr.sliding[g].across * (sigma * size_1)};
 }
 
 /// u, its rounding scale and pi from the contact forces.  [friction.hpp]
@@ -81,6 +80,18 @@ SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work
     for_each<Source, capacity>(i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
     w.scale += fr.ideal_norm[i] * std::fabs(w.pi[i]);
   });
+}
+
+/// Is anything known of u? Its terms, of which contact forces are parts, carry roundings of eps times their lengths'
+/// sum. Where forces cancel so far that not 20 bits (1e-6) are left beside the motion with and without them, the
+/// constraints have lost rank and the forces are rounding errors over rounding errors.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool resolved(const Source& source, const Work<Size>& w) noexcept {
+  double left = 0;
+  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD {
+    left += std::fabs(w.u[f]) + std::fabs(w.friction.free_motion[f]);
+  });
+  return !(w.scale * (detail::epsilon * 0x1p20) > left);  // what is not finite is for the self-check to refuse
 }
 
 /// Friction of all guides into the reaction; false when it does not oppose the slip.
@@ -248,6 +259,8 @@ SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& 
       r.power.work -= left * v[j];
     }
   });
+  const double power = r.power.work + r.power.dissipated + r.power.constraint_work;
+  residual += power - power;  // 0, or NaN where a force or its power is not finite
   return residual;
 }
 
@@ -352,6 +365,7 @@ Status accelerate(const Source& source, double t, double tau, const double* __re
     if (!table.is_rough[table.guide_of[c]]) r.lambda[c] = w.pi[table.row_of[c]];
   });
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD { r.pin[p] = {w.pi[2 * p], w.pi[2 * p + 1]}; });
+  if (!resolved(source, w)) return Status::singular_constraints;
   from_metric(source, w.dynamics, w.u);
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
     r.acceleration[j] = table.free_of[j] != none ? w.u[table.free_of[j]] : w.prescribed[j];

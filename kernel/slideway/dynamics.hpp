@@ -156,8 +156,9 @@ SLIDEWAY_INLINE bool factor_mass(const Source& source, const Kinematics<Size>& k
     d.h[j] -= spring.stiffness * (q[j] - spring.rest) + spring.damping * v[j];
     d.damper_power += spring.damping * v[j] * v[j];
   });
-  // What is left of a pivot after n subtractions of its own size is rounding below n eps of it.
-  const double rounding = table.free * detail::epsilon;
+  // What is left of a pivot after n subtractions of its own size is rounding below n eps of it, of entries that carry
+  // some tens of roundings each themselves.
+  const double rounding = 64 * table.free * detail::epsilon;
   bool definite = true;
   for_each_down<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
     definite &= d.M[f][f] > rounding * d.diagonal[f];

@@ -34,16 +34,16 @@ struct Friction {
   double Q[n_ideal][n_free], R[n_ideal][n_ideal], e[n_ideal];
   double ideal_norm[n_ideal];  ///< |P~_i|
   Meeting meeting[at_least_one(Size::pins)];
-  double ideal_target[n_ideal];  ///< c_P
+  double ideal_target[n_ideal];  ///< c_P of the pins
 };
 
 /// The HLCP of a scene's rough contacts.
 template <class Size>
 using Problem = Hlcp<at_least_one(Size::contacts)>;
 
-/// The relative Jacobian row of a link along `direction` at `place`, free coordinates only: added to x.
+/// The relative Jacobian row of a link along `direction` at `place`: the free coordinates among its columns.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void add_row(const Source& source, const Kinematics<Size>& k, const Link<Size>& link, Vec2 place,
+SLIDEWAY_INLINE void set_row(const Source& source, const Kinematics<Size>& k, const Link<Size>& link, Vec2 place,
                              Vec2 direction, double* x) noexcept {
   const auto& table = source.tables;
   for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
@@ -63,7 +63,7 @@ template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE void metric_row(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d,
                                 const Link<Size>& link, Vec2 place, Vec2 direction, double* x) noexcept {
   clear<Source>(link, x);
-  add_row(source, k, link, place, direction, x);
+  set_row(source, k, link, place, direction, x);
   to_metric(source, d, link.fill, link.fills, x);
 }
 

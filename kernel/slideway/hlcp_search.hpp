@@ -300,7 +300,7 @@ inline bool excludes(const Search<Capacity>& search, const signed char* signs) n
   const Trial<Capacity>& trial = search.trial;
   const Hlcp<Capacity>& problem = search.scaled.problem;
   const int n = search.n;
-  double r[Capacity];
+  double r[Capacity] = {};
   double z[Capacity];
   if (!(lu_error(trial, n) * reach_of(trial, n, trial.size, z) <= 0.5)) return false;
   for (int i = 0; i < n; ++i) {

@@ -211,6 +211,7 @@ SLIDEWAY_INLINE void sliding(const Source& source, const Kinematics<Size>& k, in
   s.Phi_rate[0] = dot(s.n, w);
   const double relative = dot(s.n, rail_rests ? a.known : a.known - b.known);
   s.gamma[0] = rail_turns ? relative - 2 * k.rate[rail] * s.slip[0] : relative;
+  s.along = s.across = 0;
   if (guide.contacts == 1) return;
 
   const Vec2 span = rotate(k.turn[slider], table.span[g], table.span_axes[g]);
@@ -227,7 +228,7 @@ SLIDEWAY_INLINE void sliding(const Source& source, const Kinematics<Size>& k, in
 }
 
 /// The two points of a pin, seen from body b: Phi = r_a - r_b, and with w the velocity of a's point against b's
-/// material point at the same place, Phi'' = w' = (accelerations' difference) - 2 omega_b perp w, as for a guide. So
+/// material point at the same place, Phi'' = (accelerations' difference) - 2 omega_b perp w, as for a guide. So
 /// the pin's forces on a and b act at one place and cancel, drift or not.
 struct Meeting {
   Vec2 on_a, on_b;  ///< from the bodies' origins to a's point, m

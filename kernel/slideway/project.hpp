@@ -23,10 +23,10 @@ double constraint_rows(const Source& source, const Kinematics<Size>& k, const Dy
   reach = table.length;
   const auto set = [&](int m, const Link<Size>& link, Vec2 place, Vec2 direction, double error) {
     for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { fr.Q[m][f] = 0; });
-    add_row(source, k, link, place, direction, fr.Q[m]);
+    set_row(source, k, link, place, direction, fr.Q[m]);
     to_metric(source, d, table.every, table.free, fr.Q[m]);
     fr.e[m] = -error;
-    worst = std::fabs(error) <= worst ? worst : std::fabs(error);
+    worst = worst >= std::fabs(error) || !(worst == worst) ? worst : std::fabs(error);  // NaN stays
     reach = larger(reach, larger(std::fabs(place.x), std::fabs(place.y)));
   };
   for_each<Source, Size::pins>(scene.pins, [&](int p) {

@@ -174,7 +174,7 @@ enum class Defect : unsigned char {
 constexpr const char* sentence(Defect defect) noexcept {
   switch (defect) {
     case Defect::too_large:
-      return "has more items than there is room for";
+      return "has a number of items that is negative or more than there is room for";
     case Defect::not_finite:
       return "has a value that is not a finite number";
     case Defect::parent_not_earlier:
@@ -266,6 +266,13 @@ constexpr bool unit(Vec2 r) noexcept {
   return excess <= 8 * epsilon && excess >= -8 * epsilon;
 }
 
+/// Does the unit vector t point as r does, to the rounding of the components of both?
+constexpr bool along(Vec2 t, Vec2 r) noexcept {
+  const double size = (r.x < 0 ? -r.x : r.x) + (r.y < 0 ? -r.y : r.y);
+  const double cross = t.x * r.y - t.y * r.x;
+  return cross <= 8 * epsilon * size && cross >= -8 * epsilon * size && t.x * r.x + t.y * r.y >= 0;
+}
+
 }  // namespace detail
 
 /// Every defect that the data show without trigonometry. The mass matrix and the start pose are checked where they are
@@ -281,7 +288,9 @@ constexpr Findings defects(const Scene<Size>& scene) noexcept {
   found.require(scene.bodies <= Size::bodies && scene.guides <= Size::guides && scene.drives <= Size::drives &&
                     scene.pins <= Size::pins && scene.springs <= Size::springs &&
                     scene.joint_springs <= Size::joint_springs && scene.loads <= Size::loads &&
-                    scene.inputs <= Size::inputs,
+                    scene.inputs <= Size::inputs && scene.bodies >= 0 && scene.guides >= 0 && scene.drives >= 0 &&
+                    scene.pins >= 0 && scene.springs >= 0 && scene.joint_springs >= 0 && scene.loads >= 0 &&
+                    scene.inputs >= 0,
                 Item::scene, 0, Defect::too_large);
   if (found.count > 0) return found;  // nothing beyond the arrays may be read
   found.require(coordinates(scene) <= Size::coordinates && contacts(scene) <= Size::contacts, Item::scene, 0,
@@ -295,7 +304,8 @@ constexpr Findings defects(const Scene<Size>& scene) noexcept {
     found.require(finite(body.at) && finite(body.angle) && finite(body.turn) && finite(body.mass) && finite(body.com) &&
                       finite(body.inertia) && finite(body.q) && finite(body.v),
                   Item::body, i, Defect::not_finite);
-    found.require(detail::unit(body.turn), Item::body, i, Defect::turn_not_a_rotation);
+    found.require(detail::unit(body.turn) && (body.angle == 0) == (body.turn.x == 1 && body.turn.y == 0), Item::body, i,
+                  Defect::turn_not_a_rotation);
     found.require(!(body.mass < 0), Item::body, i, Defect::negative_mass);
     found.require(!(body.inertia < 0), Item::body, i, Defect::negative_inertia);
   }
@@ -309,7 +319,8 @@ constexpr Findings defects(const Scene<Size>& scene) noexcept {
                       finite(guide.mu_static) && finite(guide.viscous) && finite(guide.preload),
                   Item::guide, g, Defect::not_finite);
     found.require(guide.direction.x != 0 || guide.direction.y != 0, Item::guide, g, Defect::no_direction);
-    found.require(detail::unit(guide.tangent), Item::guide, g, Defect::tangent_not_unit);
+    found.require(detail::unit(guide.tangent) && detail::along(guide.tangent, guide.direction), Item::guide, g,
+                  Defect::tangent_not_unit);
     found.require(!(guide.mu < 0), Item::guide, g, Defect::negative_mu);
     found.require(!(guide.mu_static < guide.mu), Item::guide, g, Defect::mu_static_below_mu);
     found.require(!(guide.viscous < 0), Item::guide, g, Defect::negative_viscous);

@@ -78,9 +78,10 @@ struct Report {
   double drift_position = 0;  ///< max |Phi|, |phi| where the step starts, m | rad
   double drift_velocity = 0;  ///< max |Phi'|, |phi'| there
   int events = 0;             ///< located
-  int unlocated_events = 0;   ///< slip reversals and normal reversals that the step went over
-  int guide = none;           ///< the guide that a refusal is about
-  EnergyFlow energy;          ///< J, of this step
+  int unlocated_events = 0;   ///< slip and normal reversals that the step went over; by euler, which
+  ///< looks at a step's start alone, that the step before went over
+  int guide = none;   ///< the guide that a refusal is about
+  EnergyFlow energy;  ///< J, of this step
 };
 
 }  // namespace slideway

@@ -35,9 +35,10 @@ constexpr const char* sentence(Status status) noexcept {
     case Status::ok:
       return "The step was made and every check on it held.";
     case Status::invalid_input:
-      return "A value is not finite, dt is not positive, or the method does not apply to this scene.";
+      return "A value is not finite, dt is not positive, the scene has defects, the method does not apply to it, or a "
+             "guide with friction is at rest.";
     case Status::singular_constraints:
-      return "The constraints have lost rank: some are redundant in this pose, so their forces are not determined.";
+      return "Rank is lost in this pose: constraints are redundant, or a coordinate moves no mass.";
     case Status::no_solution:
       return "No contact forces satisfy the equations: every sign pattern is excluded.";
     case Status::not_unique:

@@ -26,7 +26,7 @@ class BasicStepper : public Solving {
 
   Source source;
   Method method = Method::rk4;
-  double drift_limit = 1e-3;  ///< largest |Phi|, |phi| that a step may meet, in lengths of the scene (or rad)
+  double drift_limit = 1e-3;  ///< largest |Phi|, |phi| that a step may start from, m or rad, for each m of length
 
   template <class... Data>
   explicit constexpr BasicStepper(const Data&... data) noexcept : source(data...) {
@@ -46,7 +46,7 @@ class BasicStepper : public Solving {
   }
 
   /// One step of dt > 0, s. On ok the state is advanced; otherwise it is untouched and the report says why.
-  /// No heap; at most four evaluations of `accelerate` (three projections for kinematic).
+  /// No heap; at most four evaluations of `accelerate`; for kinematic three, and two projections.
   Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept {
     Report report;
     const bool same_dt = dt == state.dt;
@@ -101,6 +101,7 @@ class BasicStepper : public Solving {
     report.status = source.sound && finite(state, inputs)
                         ? slideway::project(source, next.time(), 0, inputs, next.q, next.v)
                         : Status::invalid_input;
+    if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::no_convergence;
     if (report.status == Status::ok) state = next;
     return report;
   }
@@ -150,11 +151,12 @@ class BasicStepper : public Solving {
     return k;
   }
 
-  /// What a step makes, apart from the state until it is known to be good. `reversed` marks guides and contacts whose
-  /// slip direction or sign was another at some stage than before the step.
+  /// What a step makes, apart from the state until it is known to be good. `first_` is of the first stage, at the state
+  /// itself; `_reversed` marks what was another at some stage than there, or there than after the step before.
   struct Next {
     double q[n], v[n];
     signed char mode[at_least_one(Size::guides)], sign[at_least_one(Size::contacts)];
+    signed char first_mode[at_least_one(Size::guides)], first_sign[at_least_one(Size::contacts)];
     bool slip_reversed[at_least_one(Size::guides)], force_reversed[at_least_one(Size::contacts)];
   };
 
@@ -216,11 +218,13 @@ class BasicStepper : public Solving {
     report.energy.work += weight * r.power.work;
     report.energy.dissipated += weight * r.power.dissipated;
     report.energy.constraint_work += weight * r.power.constraint_work;
-    for_each<Source, Size::guides>(
-        source.scene.guides, [&](int g) SLIDEWAY_FOLD { next.slip_reversed[g] |= before.mode[g] * next.mode[g] < 0; });
     for_each<Source, Size::contacts>(source.tables.rough, [&](int m) SLIDEWAY_FOLD {
-      const int c = source.tables.rough_contact[m];
-      next.force_reversed[c] |= before.sign[c] * next.sign[c] < 0;
+      const int c = source.tables.rough_contact[m], g = source.tables.guide_of[c];
+      next.slip_reversed[g] |= (tau == 0 ? before.mode[g] : next.first_mode[g]) * next.mode[g] < 0;
+      next.force_reversed[c] |= (tau == 0 ? before.sign[c] : next.first_sign[c]) * next.sign[c] < 0;
+      if (tau != 0) return;
+      next.first_mode[g] = next.mode[g];
+      next.first_sign[c] = next.sign[c];
     });
     return Status::ok;
   }

@@ -31,10 +31,9 @@ enum class Motion : unsigned char { turn, slide_x, slide_y };
 
 using Index = short;
 
-/// Two bodies joined by a guide (a slider, b rail) or a pin, and the coordinates that move one against the other.
+/// The coordinates that move two joined bodies against each other: a guide's slider a and rail b, or a pin's a and b.
 template <class Size>
 struct Link {
-  Index a = ground, b = ground;
   Index columns = 0;  ///< coordinates that move a or b, not both alike
   Index column[at_least_one(Size::coordinates)] = {};
   Index side[at_least_one(Size::coordinates)] = {};  ///< +1 moves a, -1 moves b
@@ -150,8 +149,6 @@ constexpr void derive_ups(const Scene<Size>& scene, Tables<Size>& t) noexcept {
 template <class Size>
 constexpr Link<Size> link(const Scene<Size>& scene, const Tables<Size>& t, int a, int b) noexcept {
   Link<Size> l;
-  l.a = static_cast<Index>(a);
-  l.b = static_cast<Index>(b);
   for (int j = 0; j < t.coordinates; ++j) {
     const bool moves_a = moves(scene, t, j, a), moves_b = moves(scene, t, j, b);
     if (moves_a != moves_b) {
