@@ -828,8 +828,8 @@ TEST(Kinematics, ContactsPinsAndTheirRowsAreTheDerivativesOfTheirPlaces) {
         agree("slip", s.slip[c], along[0]);
       }
       double N[Size::coordinates] = {}, T[Size::coordinates] = {};
-      add_row(stepper.source, k, table.guide[g], s.place, s.n, N);
-      add_row(stepper.source, k, table.guide[g], s.place, s.t, T);
+      set_row(stepper.source, k, table.guide[g], s.place, s.n, N);
+      set_row(stepper.source, k, table.guide[g], s.place, s.t, T);
       for (int f = 0; f < table.free; ++f) {
         const int j = table.free_coordinate[f];
         agree("N", N[f], derivatives([&](Real by) { return on_line(m.scene, moved(j, by), g, 0).y; })[0]);
@@ -852,7 +852,7 @@ TEST(Kinematics, ContactsPinsAndTheirRowsAreTheDerivativesOfTheirPlaces) {
       agree("pin's gamma", at.gamma.x, gamma.x);
       agree("pin's gamma", at.gamma.y, gamma.y);
       double row[Size::coordinates] = {};
-      add_row(stepper.source, k, table.pin[p], at.place, {1, 0}, row);
+      set_row(stepper.source, k, table.pin[p], at.place, {1, 0}, row);
       for (int f = 0; f < table.free; ++f) {
         const int j = table.free_coordinate[f];
         const Vec<Real> step{derivatives([&](Real by) { return gap(m.scene, moved(j, by), p).x; })[0],
