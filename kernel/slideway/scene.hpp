@@ -174,7 +174,7 @@ enum class Defect : unsigned char {
 constexpr const char* sentence(Defect defect) noexcept {
   switch (defect) {
     case Defect::too_large:
-      return "has a number of items that is negative or more than there is room for";
+      return "has more items than there is room for";
     case Defect::not_finite:
       return "has a value that is not a finite number";
     case Defect::parent_not_earlier:
@@ -270,7 +270,8 @@ constexpr bool unit(Vec2 r) noexcept {
 constexpr bool along(Vec2 t, Vec2 r) noexcept {
   const double size = (r.x < 0 ? -r.x : r.x) + (r.y < 0 ? -r.y : r.y);
   const double cross = t.x * r.y - t.y * r.x;
-  return cross <= 8 * epsilon * size && cross >= -8 * epsilon * size && t.x * r.x + t.y * r.y >= 0;
+  // Written so that NaN passes: that a value is not finite is a defect of its own.
+  return !(cross > 8 * epsilon * size) && !(cross < -8 * epsilon * size) && !(t.x * r.x + t.y * r.y < 0);
 }
 
 }  // namespace detail
