@@ -270,8 +270,8 @@ constexpr bool unit(Vec2 r) noexcept {
 constexpr bool along(Vec2 t, Vec2 r) noexcept {
   const double size = (r.x < 0 ? -r.x : r.x) + (r.y < 0 ? -r.y : r.y);
   const double cross = t.x * r.y - t.y * r.x;
-  // Written so that NaN passes: that a value is not finite is a defect of its own.
-  return !(cross > 8 * epsilon * size) && !(cross < -8 * epsilon * size) && !(t.x * r.x + t.y * r.y < 0);
+  if (!finite(size)) return true;  // a defect of its own
+  return cross <= 8 * epsilon * size && cross >= -8 * epsilon * size && t.x * r.x + t.y * r.y >= 0;
 }
 
 }  // namespace detail
