@@ -1,0 +1,444 @@
+// Accelerations and forces of a mechanism in one mode, as series in time, from the full KKT system in Cartesian
+// coordinates:
+//
+//   M a - J' lambda - (friction) = h       one row a body coordinate
+//   J a = -J. v - alpha Phi. - beta Phi    one row a constraint; joints without the gains
+//
+// A mode fixes, for every rough guide, slip +1 or -1 or rest 0, and for each of its contacts the sign of the contact
+// force. Then Coulomb's law is linear: a sliding guide's contact k has the friction force -slip c sign_k lambda_k, and
+// a guide at rest has an unknown friction force and the row v' = 0. Whether the mode is one that the law allows is for
+// friction.hpp to say.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <slideway/oracle/mechanism.hpp>
+#include <slideway/oracle/real.hpp>
+#include <vector>
+
+namespace slideway::oracle {
+
+/// Positions and speeds of all bodies at one time: centre of mass x, y and angle, body by body.
+template <class T>
+struct Motion {
+  T t;
+  std::vector<T> position, velocity;
+};
+
+struct Mode {
+  std::vector<int> slip;  ///< of each guide: +1, -1; 0 at rest, and for a guide without friction
+  std::vector<int> sign;  ///< of each contact: +1, -1
+  friend bool operator==(const Mode&, const Mode&) = default;
+};
+
+/// Coefficients of friction, one a guide: which of mu and mu_static acts is friction.hpp's choice.
+template <class T>
+using Coefficients = std::vector<T>;
+
+template <class T>
+class Dynamics {
+ public:
+  using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+  using Node = typename Tape<T>::Node;
+  using Row = typename Mechanism<T>::Row;
+
+  /// Series with coefficients of positions 0 .. orders - 1, of forces 0 .. orders - 3.
+  Dynamics(const Model<T>& model, int orders) : mechanism(model, orders) {
+    const auto add = [&](const Row& row, const T& alpha, const T& beta, int drive) {
+      constraints_.push_back({&row, alpha, beta, drive});
+    };
+    for (const Row& row : mechanism.joint) add(row, T(0), T(0), none);
+    for (std::size_t d = 0; d < model.drive.size(); ++d) {
+      add(mechanism.driven(static_cast<int>(d)), model.alpha, model.beta, static_cast<int>(d));
+    }
+    for (const Row& row : mechanism.pin) add(row, model.alpha, model.beta, none);
+    for (const Row& row : mechanism.normal) add(row, model.alpha, model.beta, none);
+  }
+
+  Mechanism<T> mechanism;
+
+  int guides() const { return static_cast<int>(mechanism.model.guide.size()); }
+  int contacts() const { return static_cast<int>(mechanism.normal.size()); }
+  const typename Model<T>::Guide& guide(int g) const { return mechanism.model.guide[static_cast<std::size_t>(g)]; }
+  int first_contact(int g) const {
+    return static_cast<int>(std::find(mechanism.guide_of.begin(), mechanism.guide_of.end(), g) -
+                            mechanism.guide_of.begin());
+  }
+  const Row& sliding(int g) const { return mechanism.tangential[static_cast<std::size_t>(first_contact(g))]; }
+
+  // Unknowns: accelerations, then multipliers of joints, drives, pins, contacts, then friction of guides at rest.
+  int unknown_of_drive(int d) const { return 3 * mechanism.bodies() + static_cast<int>(mechanism.joint.size()) + d; }
+  int unknown_of_pin(int row) const { return unknown_of_drive(static_cast<int>(mechanism.law.size())) + row; }
+  int unknown_of_contact(int c) const { return unknown_of_pin(static_cast<int>(mechanism.pin.size())) + c; }
+
+  /// The problem A+ x+ - A- x- = b of the contact forces at the motion of begin(), in the mode's slips: everything else
+  /// eliminated, row by row. False if what is left without contacts is singular.
+  struct ContactProblem {
+    int n;
+    std::vector<T> plus, minus, b;
+  };
+  bool contact_problem(const Mode& mode, const Coefficients<T>& mu, ContactProblem& problem);
+
+  /// From the joints' coordinates to Cartesian ones.
+  Motion<T> place(const T& t, const std::vector<T>& q, const std::vector<T>& v) const;
+
+  /// Moves a motion onto the constraints and their rates, and guides at rest to speed zero, by the least change in the
+  /// mass metric. False if that fails, or the constraints are redundant there.
+  bool project(Motion<T>& motion, const std::vector<bool>& at_rest);
+
+  /// Begins series at a motion: positions to order 1, what depends on speeds to order 0.
+  void begin(const Motion<T>& motion);
+
+  /// Begins the solution in a mode at the motion of begin(). False if the KKT matrix is singular there.
+  bool solve(const Mode& mode, const Coefficients<T>& mu);
+  /// Extends the solution to the next order.
+  void extend();
+  /// Extends positions and speeds by what the last order of the solution says: to orders solved() + 1 and solved().
+  void extend_positions();
+  int solved() const { return static_cast<int>(solution_.size()); }  ///< orders of the solution that are known
+
+  /// The solution of solve() and extend(), order by order.
+  const T& unknown(int i, int order) const { return solution_[static_cast<std::size_t>(order)](i); }
+  const T& lambda(int c, int order) const { return unknown(unknown_of_contact(c), order); }
+  /// Friction on the slider along the guide's direction.
+  T friction(int g, int order) const;
+  /// What is left of the friction limit c Lambda + preload in the direction `side` of the friction force: a guide stays
+  /// at rest while both are >= 0.
+  T margin(int g, int side, int order) const { return limit(g, order) - T(side) * friction(g, order); }
+
+ private:
+  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  using Factors = Eigen::PartialPivLU<Matrix>;
+  struct Constraint {
+    const Row* row;
+    T alpha, beta;
+    int drive;
+  };
+  struct Entry {
+    int row, column;
+    Node node;
+    T weight;
+  };
+
+  static bool lost_rank(const Factors& factors);
+  bool correct(const std::vector<const Row*>& rows, const Vector& errors, std::vector<T>& x) const;
+  void add_row(int equation, int unknown, const Row& row, bool as_constraint);
+  void add_force(int unknown, const Row& row, const T& factor);
+  void assemble();
+  Vector right_side(int k) const;
+  void solve_order(int k);
+  T limit(int g, int order) const;
+  bool stuck(int g) const { return guide(g).rough() && mode_.slip[static_cast<std::size_t>(g)] == 0; }
+
+  std::vector<Constraint> constraints_;
+  std::vector<std::vector<T>> law_;  ///< of each drive, two orders longer
+  Mode mode_;
+  Coefficients<T> mu_;
+  std::vector<int> friction_unknown_;  ///< of each guide at rest
+  std::vector<Entry> entries_;
+  int size_ = 0;
+  Factors factors_;
+  std::vector<Vector> solution_;
+};
+
+/// A pivot that is rounding beside the largest: rows and columns of mechanisms in SI units differ by far less.
+template <class T>
+bool Dynamics<T>::lost_rank(const Factors& factors) {
+  if (factors.rows() == 0) return false;
+  const auto pivots = factors.matrixLU().diagonal().cwiseAbs();
+  return !(pivots.minCoeff() > zero_tolerance<T>() * pivots.maxCoeff());
+}
+
+template <class T>
+Motion<T> Dynamics<T>::place(const T& t, const std::vector<T>& q, const std::vector<T>& v) const {
+  using std::cos, std::sin;
+  struct Pose {
+    Vec<T> origin, velocity;
+    T theta, omega;
+  };
+  const auto turned = [](const Vec<T>& u, const Vec<T>& r) {
+    return Vec<T>{T(u.x * r.x - u.y * r.y), T(u.x * r.y + u.y * r.x)};
+  };
+  const auto shift = [](Pose& pose, const Vec<T>& r) {  // the origin to r from it, r fixed in the body
+    pose.origin = {T(pose.origin.x + r.x), T(pose.origin.y + r.y)};
+    pose.velocity = {T(pose.velocity.x - pose.omega * r.y), T(pose.velocity.y + pose.omega * r.x)};
+  };
+  Motion<T> motion{t, {}, {}};
+  std::vector<Pose> poses;
+  const Pose at_ground{{T(0), T(0)}, {T(0), T(0)}, T(0), T(0)};
+  std::size_t j = 0;
+  for (const auto& body : mechanism.model.body) {
+    Pose pose = body.parent == ground ? at_ground : poses[static_cast<std::size_t>(body.parent)];
+    shift(pose, turned({T(cos(pose.theta)), T(sin(pose.theta))}, body.at));
+    pose.theta += body.angle;
+    const Vec<T> axes = {T(cos(pose.theta)), T(sin(pose.theta))};
+    const bool slides = body.joint == Joint::prismatic || body.joint == Joint::planar;
+    if (slides) {
+      const bool planar = body.joint == Joint::planar;
+      shift(pose, turned(axes, {q[j], planar ? q[j + 1] : T(0)}));
+      const Vec<T> along = turned(axes, {v[j], planar ? v[j + 1] : T(0)});
+      pose.velocity = {T(pose.velocity.x + along.x), T(pose.velocity.y + along.y)};
+      j += planar ? 2 : 1;
+    }
+    if (body.joint == Joint::revolute || body.joint == Joint::planar) {
+      pose.theta += q[j];
+      pose.omega += v[j];
+      ++j;
+    }
+    poses.push_back(pose);
+    shift(pose, turned({T(cos(pose.theta)), T(sin(pose.theta))}, body.com));
+    motion.position.insert(motion.position.end(), {pose.origin.x, pose.origin.y, pose.theta});
+    motion.velocity.insert(motion.velocity.end(), {pose.velocity.x, pose.velocity.y, pose.omega});
+  }
+  return motion;
+}
+
+template <class T>
+void Dynamics<T>::begin(const Motion<T>& motion) {
+  Tape<T>& tape = mechanism.tape;
+  for (int i = 0; i < 3 * mechanism.bodies(); ++i) {
+    tape.set(mechanism.position(i), 0, motion.position[static_cast<std::size_t>(i)]);
+    tape.set(mechanism.position(i), 1, motion.velocity[static_cast<std::size_t>(i)]);
+  }
+  law_.clear();
+  for (std::size_t d = 0; d < mechanism.law.size(); ++d) {
+    law_.push_back(law_series(mechanism.model.drive[d], motion.t, tape.orders() + 2));
+    for (int k = 0; k < tape.orders(); ++k) tape.set(mechanism.law[d], k, law_[d][static_cast<std::size_t>(k)]);
+  }
+  tape.extend(0);
+}
+
+/// x += the least change in the mass metric that takes `errors` from the rows, to first order.
+template <class T>
+bool Dynamics<T>::correct(const std::vector<const Row*>& rows, const Vector& errors, std::vector<T>& x) const {
+  const int bodies = static_cast<int>(x.size()), size = bodies + static_cast<int>(rows.size());
+  Matrix matrix(size, size);
+  matrix.setZero();
+  for (int i = 0; i < bodies; ++i) matrix(i, i) = mechanism.mass(i);
+  for (int r = bodies; r < size; ++r) {
+    const Row& row = *rows[static_cast<std::size_t>(r - bodies)];
+    for (int j = 0; j < 3; ++j) {
+      const auto e = static_cast<std::size_t>(j);
+      if (row.a != ground) matrix(r, 3 * row.a + j) = matrix(3 * row.a + j, r) = row.on_a[e][0];
+      if (row.b != ground) matrix(r, 3 * row.b + j) = matrix(3 * row.b + j, r) = row.on_b[e][0];
+    }
+  }
+  Vector right(size);
+  right.setZero();
+  right.tail(size - bodies) = -errors;
+  Factors factors(matrix);
+  if (lost_rank(factors)) return false;
+  const Vector change = factors.solve(right);
+  for (int i = 0; i < bodies; ++i) x[static_cast<std::size_t>(i)] += change(i);
+  return true;
+}
+
+template <class T>
+bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
+  using std::abs;
+  std::vector<const Row*> rows;
+  for (const Constraint& c : constraints_) rows.push_back(c.row);
+  const auto errors = [&](bool of_rates) {
+    begin(motion);
+    Vector e(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      e(static_cast<Eigen::Index>(r)) = of_rates ? rows[r]->speed[0] : rows[r]->value[0];
+      if (r >= constraints_.size() || constraints_[r].drive == none) continue;
+      e(static_cast<Eigen::Index>(r)) -= law_[static_cast<std::size_t>(constraints_[r].drive)][of_rates ? 1 : 0];
+    }
+    return e;
+  };
+  constexpr int most_steps = 40;  // Newton doubles the digits: seven from 1 to 1e-50, the rest to come near
+  T worst(1);
+  for (int step = 0; step < most_steps && worst > 0; ++step) {
+    const Vector e = errors(false);
+    const T before = worst;
+    worst = e.size() == 0 ? T(0) : T(e.cwiseAbs().maxCoeff());
+    if (step > 0 && worst >= before && worst < zero_tolerance<T>()) break;  // rounding
+    if (!correct(rows, e, motion.position)) return false;
+  }
+  if (!(worst < zero_tolerance<T>())) return false;
+  std::vector<T> velocity = motion.velocity;
+  const Vector rates = errors(true);
+  if (!correct(rows, rates, velocity)) return false;
+  for (int g = 0; g < guides(); ++g) {
+    if (at_rest[static_cast<std::size_t>(g)]) rows.push_back(&sliding(g));
+  }
+  // More guides at rest than freedom: their rows are redundant, and the constraints alone hold them.
+  if (!correct(rows, errors(true), motion.velocity)) motion.velocity = velocity;
+  return true;
+}
+
+template <class T>
+bool Dynamics<T>::solve(const Mode& mode, const Coefficients<T>& mu) {
+  mode_ = mode;
+  mu_ = mu;
+  solution_.clear();
+  assemble();
+  Matrix matrix(size_, size_);
+  matrix.setZero();
+  for (const Entry& e : entries_) matrix(e.row, e.column) += e.weight * e.node[0];
+  factors_.compute(matrix);
+  if (lost_rank(factors_)) return false;
+  solve_order(0);
+  return true;
+}
+
+template <class T>
+void Dynamics<T>::extend_positions() {
+  const int k = solved();
+  for (int i = 0; i < 3 * mechanism.bodies(); ++i) {
+    mechanism.tape.set(mechanism.position(i), k + 1, T(unknown(i, k - 1) / T(k * (k + 1))));
+  }
+  mechanism.tape.extend(k);
+}
+
+template <class T>
+void Dynamics<T>::extend() {
+  extend_positions();
+  solve_order(solved());
+}
+
+template <class T>
+bool Dynamics<T>::contact_problem(const Mode& mode, const Coefficients<T>& mu, ContactProblem& problem) {
+  mode_ = mode;
+  mu_ = mu;
+  assemble();
+  const int n = contacts(), first = unknown_of_contact(0);
+  Matrix whole(size_, size_);  // with the forces of + contacts in their columns, if all signs are +
+  whole.setZero();
+  for (const Entry& e : entries_) whole(e.row, e.column) += e.weight * e.node[0];
+  for (int& sign : mode_.sign) sign = -sign;
+  assemble();
+  Matrix other(size_, size_);
+  other.setZero();
+  for (const Entry& e : entries_) other(e.row, e.column) += e.weight * e.node[0];
+  const Factors factors(whole.topLeftCorner(first, first));
+  if (lost_rank(factors)) return false;
+  const Vector right = right_side(0);
+  const Matrix rows = whole.block(first, 0, n, first);
+  const Matrix plus = -rows * factors.solve(Matrix(whole.block(0, first, first, n)));
+  const Matrix minus = -rows * factors.solve(Matrix(other.block(0, first, first, n)));
+  const Vector b = right.segment(first, n) - rows * factors.solve(Vector(right.head(first)));
+  problem = {n, {}, {}, {}};
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const bool positive = mode.sign[static_cast<std::size_t>(j)] > 0;
+      problem.plus.push_back(positive ? plus(i, j) : minus(i, j));
+      problem.minus.push_back(positive ? minus(i, j) : plus(i, j));
+    }
+    problem.b.push_back(b(i));
+  }
+  return true;
+}
+
+/// The multiplier's column, and for a constraint its row.
+template <class T>
+void Dynamics<T>::add_row(int equation, int unknown, const Row& row, bool as_constraint) {
+  const auto add = [&](int body, const std::array<Node, 3>& entry) {
+    if (body == ground) return;
+    for (int j = 0; j < 3; ++j) {
+      const Node& node = entry[static_cast<std::size_t>(j)];
+      if (node.is_zero()) continue;
+      if (as_constraint) entries_.push_back({equation, 3 * body + j, node, T(1)});
+      entries_.push_back({3 * body + j, unknown, node, T(-1)});
+    }
+  };
+  add(row.a, row.on_a);
+  add(row.b, row.on_b);
+}
+
+/// A force along the row of `factor` times an unknown.
+template <class T>
+void Dynamics<T>::add_force(int unknown, const Row& row, const T& factor) {
+  const std::size_t first = entries_.size();
+  add_row(unknown, unknown, row, false);
+  for (std::size_t e = first; e < entries_.size(); ++e) entries_[e].weight *= factor;
+}
+
+template <class T>
+void Dynamics<T>::assemble() {
+  entries_.clear();
+  const int bodies = 3 * mechanism.bodies();
+  for (int i = 0; i < bodies; ++i) entries_.push_back({i, i, Node(mechanism.mass(i)), T(1)});
+  size_ = bodies;
+  for (const Constraint& c : constraints_) {
+    add_row(size_, size_, *c.row, true);
+    ++size_;
+  }
+  friction_unknown_.assign(static_cast<std::size_t>(guides()), none);
+  for (int g = 0; g < guides(); ++g) {
+    if (!stuck(g)) continue;
+    add_row(size_, size_, sliding(g), true);
+    friction_unknown_[static_cast<std::size_t>(g)] = size_++;
+  }
+  for (int c = 0; c < contacts(); ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    const auto g = static_cast<std::size_t>(mechanism.guide_of[at]);
+    if (mode_.slip[g] == 0) continue;
+    add_force(unknown_of_contact(c), mechanism.tangential[at], T(-mu_[g] * T(mode_.slip[g] * mode_.sign[at])));
+  }
+}
+
+template <class T>
+typename Dynamics<T>::Vector Dynamics<T>::right_side(int k) const {
+  Vector b(size_);
+  const int bodies = 3 * mechanism.bodies();
+  for (int i = 0; i < bodies; ++i) b(i) = mechanism.force[static_cast<std::size_t>(i)][k];
+  int equation = bodies;
+  for (const Constraint& c : constraints_) {
+    b(equation) = -(c.row->turning[k] + c.alpha * c.row->speed[k] + c.beta * c.row->value[k]);
+    if (c.drive != none) {
+      const auto& f = law_[static_cast<std::size_t>(c.drive)];
+      const auto o = static_cast<std::size_t>(k);
+      b(equation) += T((k + 1) * (k + 2)) * f[o + 2] + c.alpha * T(k + 1) * f[o + 1] + c.beta * f[o];
+    }
+    ++equation;
+  }
+  for (int g = 0; g < guides(); ++g) {
+    const Row& row = sliding(g);
+    if (stuck(g)) b(equation++) = -row.turning[k];
+    const T preload = -T(mode_.slip[static_cast<std::size_t>(g)]) * guide(g).preload;
+    if (preload == 0) continue;
+    for (int j = 0; j < 3; ++j) {
+      const auto e = static_cast<std::size_t>(j);
+      if (row.a != ground) b(3 * row.a + j) += preload * row.on_a[e][k];
+      if (row.b != ground) b(3 * row.b + j) += preload * row.on_b[e][k];
+    }
+  }
+  return b;
+}
+
+template <class T>
+void Dynamics<T>::solve_order(int k) {
+  Vector b = right_side(k);
+  for (const Entry& e : entries_) {
+    if (e.node.is_constant()) continue;
+    T sum(0);
+    for (int j = 1; j <= k; ++j) sum += e.node[j] * solution_[static_cast<std::size_t>(k - j)](e.column);
+    b(e.row) -= e.weight * sum;
+  }
+  solution_.push_back(factors_.solve(b));
+}
+
+template <class T>
+T Dynamics<T>::friction(int g, int order) const {
+  const T viscous = guide(g).viscous * sliding(g).speed[order];
+  if (stuck(g)) return unknown(friction_unknown_[static_cast<std::size_t>(g)], order) - viscous;
+  return -T(mode_.slip[static_cast<std::size_t>(g)]) * limit(g, order) - viscous;
+}
+
+template <class T>
+T Dynamics<T>::limit(int g, int order) const {
+  T sum = order == 0 ? guide(g).preload : T(0);
+  for (int c = 0; c < contacts(); ++c) {
+    if (mechanism.guide_of[static_cast<std::size_t>(c)] != g) continue;
+    sum += mu_[static_cast<std::size_t>(g)] * T(mode_.sign[static_cast<std::size_t>(c)]) * lambda(c, order);
+  }
+  return sum;
+}
+
+extern template class Dynamics<Real>;
+
+}  // namespace slideway::oracle
