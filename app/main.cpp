@@ -28,7 +28,9 @@ int command(int count, char** arguments) {
   command.require_subcommand(1);
   int status = good;
   add_run(command, status);
+  add_verify(command, status);
   add_lint(command, status);
+  add_hlcp(command, status);
   add_export(command, status);
   add_scenes(command, status);
   try {

@@ -1,16 +1,11 @@
 // Watches a run: reactions, peaks, events and energies after every step; keeps samples and writes CSV rows.
 #pragma once
 
-#include <slideway/step.hpp>
-
 #include "output.hpp"
+#include "preparation.hpp"
 #include "recording.hpp"
 
 namespace slideway::app {
-
-using RunState = State<io::RunSize>;
-using RunStepper = RunTimeStepper<io::RunSize>;
-using RunInputs = Inputs<io::RunSize>;
 
 class Recorder {
  public:
@@ -26,6 +21,8 @@ class Recorder {
   void refuse(const Report& report);
   /// Writes the last row if it is not there yet.
   void finish();
+  /// The instant that was seen last.
+  Sample sample() const;
 
  private:
   bool observe(const RunState& state);
@@ -35,7 +32,6 @@ class Recorder {
   void find_peaks();
   void find_energies();
   void keep(bool row, bool sample);
-  Sample sample() const;
 
   const RunStepper& stepper_;
   const RunInputs& inputs_;

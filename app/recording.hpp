@@ -9,22 +9,8 @@
 
 namespace slideway::app {
 
+using io::EventKind;
 using io::Sample;
-
-enum class EventKind { slip_reversal, stick, slip, normal_reversal };
-constexpr const char* name(EventKind kind) noexcept {
-  switch (kind) {
-    case EventKind::slip_reversal:
-      return "slip_reversal";
-    case EventKind::stick:
-      return "stick";
-    case EventKind::slip:
-      return "slip";
-    case EventKind::normal_reversal:
-      return "normal_reversal";
-  }
-  return "unknown";
-}
 
 /// Seen between two steps; its time is that of the later one.
 struct Event {

@@ -1,26 +1,17 @@
 #include "report.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <ostream>
-#include <slideway/embedded/page.hpp>
-#include <string_view>
+#include <string>
+
+#include "page.hpp"
 
 namespace slideway::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using io::Json;
 
-/// x to nine significant digits, a thousand times finer than any screen shows; the CSV has all of them. JSON has no
-/// infinities: null.
-Json number(double x) {
-  if (!std::isfinite(x)) return nullptr;
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.9g", x);
-  return std::strtod(digits, nullptr);
-}
+/// To nine significant digits, a thousand times finer than any screen shows; the CSV has all of them.
+Json number(double x) { return rounded(x, 9); }
 
 Json point(Vec2 r) { return {number(r.x), number(r.y)}; }
 
@@ -220,9 +211,8 @@ Json events(const Recording& recording) {
   return result;
 }
 
-/// The data as JSON. "<" is written as an escape, so that no text in it can end the script element that holds it.
-std::string data(const Recording& recording) {
-  const Json document = {
+Json data(const Recording& recording) {
+  return {
       {"version", SLIDEWAY_VERSION},
       {"scene", scene(recording)},
       {"inputs", inputs(recording)},
@@ -236,66 +226,12 @@ std::string data(const Recording& recording) {
       {"events", events(recording)},
       {"samples", samples(recording)},
   };
-  std::string text;
-  for (char c : document.dump(-1, ' ', true, Json::error_handler_t::replace)) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
-  return text;
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
-std::string_view embedded_file(std::string_view name) {
-  for (const auto& [file, text] : embedded::page) {
-    if (file != name) continue;
-    // A last line that names a source map would be the page's only request.
-    const auto map = text.rfind("# sourceMappingURL=");
-    return map == text.npos ? text : text.substr(0, text.rfind('\n', map));
-  }
-  return {};
 }
 
 }  // namespace
 
 void write_report(const Recording& recording, std::ostream& out) {
-  // report.html with {{FILE}} replaced by that file, {{title}} by the scene's name and {{data}} by the data.
-  std::string_view rest = embedded_file("report.html");
-  for (auto open = rest.find("{{"); open != rest.npos; open = rest.find("{{")) {
-    const auto close = rest.find("}}", open);
-    const std::string_view key = rest.substr(open + 2, close - open - 2);
-    out << rest.substr(0, open);
-    if (key == "title") {
-      out << escaped(recording.file.name);
-    } else if (key == "data") {
-      out << data(recording);
-    } else {
-      out << embedded_file(key);
-    }
-    rest.remove_prefix(close + 2);
-  }
-  out << rest;
+  write_page("report.html", recording.file.name, data(recording), out);
 }
 
 }  // namespace slideway::app

@@ -40,18 +40,15 @@ CLI::Validator one_of(std::vector<std::string> choices) {
 
 }  // namespace
 
-void add_run_options(CLI::App& verb, RunOptions& options) {
+void add_step_options(CLI::App& verb, StepOptions& options) {
   add_scene_options(verb, options.scene);
   verb.add_option("--method", options.method, "How to step")->check(one_of(io::methods()));
   verb.add_option("--dt", options.dt, "Step, s")->check(positive());
   verb.add_option("--duration", options.duration, "Of the run, s")->check(positive());
   verb.add_option("--alpha", options.alpha, "Baumgarte's gain on rates, 1/s")->check(not_negative());
   verb.add_option("--beta", options.beta, "Baumgarte's gain on positions, 1/s^2")->check(not_negative());
-  verb.add_option("--every", options.every, "CSV: each how-many-eth step is a row")
-      ->check(CLI::Range(1LL, 1000000000000LL));
-  verb.add_option("--csv", options.csv, "Write the trajectory; - is standard output");
   verb.add_option("--json", options.json, "Write the summary as JSON; - is standard output");
-  verb.add_option("--report", options.report, "Write an HTML page with drawing and charts");
+  verb.add_option("--report", options.report, "Write an HTML page with charts");
   verb.add_flag("--project-start", options.project_start, "Move the start onto the constraints");
   verb.add_option("--input", options.inputs, "NAME=V: a live input, constant over the run")->allow_extra_args(false);
   verb.add_option("--not-unique", options.not_unique, "When several sets of contact forces are possible")
@@ -59,7 +56,14 @@ void add_run_options(CLI::App& verb, RunOptions& options) {
   verb.add_flag("--quiet", options.quiet, "No table, no progress");
 }
 
-std::optional<std::vector<double>> input_values(const RunOptions& options, const io::SceneFile& file) {
+void add_run_options(CLI::App& verb, RunOptions& options) {
+  add_step_options(verb, options);
+  verb.add_option("--every", options.every, "CSV: each how-many-eth step is a row")
+      ->check(CLI::Range(1LL, 1000000000000LL));
+  verb.add_option("--csv", options.csv, "Write the trajectory; - is standard output");
+}
+
+std::optional<std::vector<double>> input_values(const StepOptions& options, const io::SceneFile& file) {
   std::vector<std::optional<double>> given(file.input_names.size());
   bool good = true;
   for (const std::string& input : options.inputs) {

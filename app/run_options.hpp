@@ -1,4 +1,4 @@
-// What `slideway run` can be told.
+// What `slideway run` can be told, and `slideway verify` too for the most part.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,25 @@
 
 namespace slideway::app {
 
-struct RunOptions {
+/// How to step, and where the summary goes.
+struct StepOptions {
   SceneOptions scene;
   std::optional<std::string> method;
   std::optional<double> dt, duration, alpha, beta;
-  long long every = 1;
-  std::string csv, json, report;
+  std::string json, report;
   bool project_start = false, quiet = false;
   std::vector<std::string> inputs;
   std::string not_unique = "refuse";
 };
+void add_step_options(CLI::App& verb, StepOptions& options);
 
+struct RunOptions : StepOptions {
+  long long every = 1;
+  std::string csv;
+};
 void add_run_options(CLI::App& verb, RunOptions& options);
 
 /// The value of each input of the scene, in its order; nothing, and said, when one is missing, unknown or no number.
-std::optional<std::vector<double>> input_values(const RunOptions& options, const io::SceneFile& file);
+std::optional<std::vector<double>> input_values(const StepOptions& options, const io::SceneFile& file);
 
 }  // namespace slideway::app

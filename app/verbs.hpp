@@ -9,7 +9,9 @@ namespace slideway::app {
 enum Exit : int { good = 0, refused = 1, bad_input = 2 };
 
 void add_run(CLI::App& command, int& status);
+void add_verify(CLI::App& command, int& status);
 void add_lint(CLI::App& command, int& status);
+void add_hlcp(CLI::App& command, int& status);
 void add_export(CLI::App& command, int& status);
 void add_scenes(CLI::App& command, int& status);
 

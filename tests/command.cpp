@@ -1,31 +1,19 @@
 // The slideway command: exit status, messages, files.
-#include <gtest/gtest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
-#include <string>
 #include <vector>
+
+#include "support/command.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
+using namespace test;
 
 const fs::path source_dir = SLIDEWAY_SOURCE_DIR;
 const fs::path defects_dir = source_dir / "tests/data/defects";
 
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> list;
   std::istringstream in(text);
@@ -42,29 +30,10 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
   for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += by.size()) text.replace(at, what.size(), by);
 }
 
-struct Result {
-  int status;
-  std::string out, err;
-};
-
-/// Runs shell words with a directory of their own as $TMP.
-class Command : public testing::Test {
+class Command : public CommandTest {
  protected:
-  Command() {
-    std::string pattern = (fs::temp_directory_path() / "slideway_command_XXXXXX").string();
-    tmp = mkdtemp(pattern.data());
-  }
-  ~Command() override { fs::remove_all(tmp); }
-
-  Result shell(const std::string& words, const fs::path& directory) const {
-    const fs::path out = tmp / "stdout", err = tmp / "stderr";
-    const std::string line = "cd '" + directory.string() + "' && export TMP='" + tmp.string() + "' && " + words +
-                             " >'" + out.string() + "' 2>'" + err.string() + "'";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-  }
   Result slideway(const std::string& arguments, const fs::path& directory = defects_dir) const {
-    return shell("'" SLIDEWAY_COMMAND "' " + arguments, directory);
+    return CommandTest::slideway(arguments, directory);
   }
   json run(const std::string& arguments) const {
     const Result result = slideway("run " + arguments + " --quiet --json $TMP/run.json");
@@ -72,8 +41,6 @@ class Command : public testing::Test {
     return json::parse(read(tmp / "run.json"));
   }
   void make_hostile_files() const;
-
-  fs::path tmp;
 };
 
 struct Case {
@@ -175,14 +142,6 @@ TEST_F(Command, TakesAFileBeforeAShippedSceneOfItsName) {
 }
 
 TEST_F(Command, HoldsJsonDocumentsToTheirSchemas) {
-  write(tmp / "hold.py", R"(import json, sys
-import jsonschema
-schema = json.load(open(sys.argv[1]))
-jsonschema.Draft202012Validator.check_schema(schema)
-for name in sys.argv[2:]:
-    jsonschema.validate(json.load(open(name)), schema, cls=jsonschema.Draft202012Validator)
-)");
-  ASSERT_EQ(shell("python3 -c 'import jsonschema'", tmp).status, 0) << "this test needs Debian's python3-jsonschema";
   const std::string quietly = " --quiet --json $TMP/";
   slideway("run crank_rocker" + quietly + "run1.json");
   slideway("run squeezer --duration 1e-4" + quietly + "run2.json");
@@ -191,11 +150,8 @@ for name in sys.argv[2:]:
   slideway("run at_rest.toml" + quietly + "run5.json");
   slideway("lint crank_rocker --json $TMP/lint1.json");
   slideway("lint gantry --json $TMP/lint2.json");
-  const std::string schemas = (source_dir / "docs/schema").string();
-  const Result runs = shell("python3 hold.py '" + schemas + "/run.schema.json' run*.json", tmp);
-  EXPECT_EQ(runs.status, 0) << runs.err;
-  const Result lints = shell("python3 hold.py '" + schemas + "/lint.schema.json' lint*.json", tmp);
-  EXPECT_EQ(lints.status, 0) << lints.err;
+  hold_to_schema("run", "run*.json");
+  hold_to_schema("lint", "lint*.json");
 }
 
 TEST_F(Command, RepeatsItselfButForTheTimeItTook) {

@@ -363,6 +363,18 @@ TEST(Hlcp, RefusesRankLostToRounding) {
       << name(solution.status);
 }
 
+TEST(Hlcp, NeverClaimsASingleSolutionOfTwoThatAreClose) {
+  // Found beside the exact oracle: x_0 = +-2^-30, the others alike; 2^-30 of the largest is within the window of ties.
+  const double large = 0x1p30;
+  const Hlcp<5> problem = {
+      {{-large, 1, 0, 0, 0}, {0, 0, 0, -1, 0}, {0, -1, 0, -1, -1}, {0, 1, 0, 0, -1}, {0, 1, 1, 0, 0}},
+      {{large, 1, 0, 0, 0}, {0, 0, 0, -1, 0}, {0, -1, -1, -1, -1}, {0, 0, 0, 1, -1}, {0, 1, 0, 0, 0}},
+      {0, 0, 1, 0, 1}};
+  const HlcpSolution<5> solution = answer(problem);
+  EXPECT_NE(solution.uniqueness, Uniqueness::single) << name(solution.status);
+  EXPECT_NE(solution.uniqueness, Uniqueness::certified) << name(solution.status);
+}
+
 TEST(Hlcp, EnumeratesWhatIterationCannotSolveAboveOrderFour) {
   // Five equations 2u - 3|u| = r: no solution if any r is positive, 2^5 if all are negative.
   Hlcp<5> problem = {};

@@ -314,7 +314,8 @@ inline bool excludes(const Search<Capacity>& search, const signed char* signs) n
   return false;
 }
 
-/// Enters the pattern just tried.
+/// Enters the pattern just tried. Solutions that are too near to be told apart by distance are one if no component has
+/// opposite signs: then both solve the nonsingular pattern of either. Else rounding decides, and nothing is certain.
 template <int Capacity>
 inline void enter(Search<Capacity>& search, const signed char* signs, bool accurate,
                   Census<Capacity>& census) noexcept {
@@ -326,9 +327,11 @@ inline void enter(Search<Capacity>& search, const signed char* signs, bool accur
   }
   double largest = 0.0;
   double distance = 0.0;
+  bool opposite = false;
   for (int k = 0; k < search.n; ++k) {
     largest = larger(largest, std::fabs(trial.x[k]));
     distance = larger(distance, std::fabs(trial.x[k] - census.x[k]));
+    opposite = opposite || (trial.x[k] < 0.0 ? census.x[k] > 0.0 : trial.x[k] > 0.0 && census.x[k] < 0.0);
   }
   if (census.solutions == 0) {
     std::memcpy(census.x, trial.x, sizeof census.x);
@@ -336,6 +339,8 @@ inline void enter(Search<Capacity>& search, const signed char* signs, bool accur
     census.solutions = 1;
   } else if (distance > tie_window * largest) {
     census.solutions = 2;
+  } else if (opposite) {
+    census.doubtful = true;
   }
 }
 

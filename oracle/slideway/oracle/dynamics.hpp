@@ -10,11 +10,10 @@
 // friction.hpp to say.
 #pragma once
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <slideway/oracle/elimination.hpp>
 #include <slideway/oracle/mechanism.hpp>
-#include <slideway/oracle/real.hpp>
 #include <vector>
 
 namespace slideway::oracle {
@@ -39,7 +38,7 @@ using Coefficients = std::vector<T>;
 template <class T>
 class Dynamics {
  public:
-  using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+  using Vector = std::vector<T>;
   using Node = typename Tape<T>::Node;
   using Row = typename Mechanism<T>::Row;
 
@@ -90,8 +89,9 @@ class Dynamics {
   /// Begins series at a motion: positions to order 1, what depends on speeds to order 0.
   void begin(const Motion<T>& motion);
 
-  /// Begins the solution in a mode at the motion of begin(). False if the KKT matrix is singular there.
-  bool solve(const Mode& mode, const Coefficients<T>& mu);
+  /// Begins the solution in a mode at the motion of begin(). False if the KKT matrix is singular there. `applied`: of
+  /// each guide that slips, a friction force beside the law's, N; constant.
+  bool solve(const Mode& mode, const Coefficients<T>& mu, const std::vector<T>& applied = {});
   /// Extends the solution to the next order.
   void extend();
   /// Extends positions and speeds by what the last order of the solution says: to orders solved() + 1 and solved().
@@ -99,7 +99,9 @@ class Dynamics {
   int solved() const { return static_cast<int>(solution_.size()); }  ///< orders of the solution that are known
 
   /// The solution of solve() and extend(), order by order.
-  const T& unknown(int i, int order) const { return solution_[static_cast<std::size_t>(order)](i); }
+  const T& unknown(int i, int order) const {
+    return solution_[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)];
+  }
   const T& lambda(int c, int order) const { return unknown(unknown_of_contact(c), order); }
   /// Friction on the slider along the guide's direction.
   T friction(int g, int order) const;
@@ -108,8 +110,7 @@ class Dynamics {
   T margin(int g, int side, int order) const { return limit(g, order) - T(side) * friction(g, order); }
 
  private:
-  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-  using Factors = Eigen::PartialPivLU<Matrix>;
+  using Matrix = typename Elimination<T>::Rows;
   struct Constraint {
     const Row* row;
     T alpha, beta;
@@ -121,7 +122,10 @@ class Dynamics {
     T weight;
   };
 
-  static bool lost_rank(const Factors& factors);
+  static Matrix zero_matrix(int size) {
+    return Matrix(static_cast<std::size_t>(size), Vector(static_cast<std::size_t>(size), T(0)));
+  }
+  Matrix matrix() const;
   bool correct(const std::vector<const Row*>& rows, const Vector& errors, std::vector<T>& x) const;
   void add_row(int equation, int unknown, const Row& row, bool as_constraint);
   void add_force(int unknown, const Row& row, const T& factor);
@@ -129,26 +133,20 @@ class Dynamics {
   Vector right_side(int k) const;
   void solve_order(int k);
   T limit(int g, int order) const;
+  T applied(int g) const { return applied_.empty() ? T(0) : applied_[static_cast<std::size_t>(g)]; }
   bool stuck(int g) const { return guide(g).rough() && mode_.slip[static_cast<std::size_t>(g)] == 0; }
 
   std::vector<Constraint> constraints_;
   std::vector<std::vector<T>> law_;  ///< of each drive, two orders longer
   Mode mode_;
   Coefficients<T> mu_;
+  std::vector<T> applied_;
   std::vector<int> friction_unknown_;  ///< of each guide at rest
   std::vector<Entry> entries_;
   int size_ = 0;
-  Factors factors_;
+  Elimination<T> factors_;
   std::vector<Vector> solution_;
 };
-
-/// A pivot that is rounding beside the largest: rows and columns of mechanisms in SI units differ by far less.
-template <class T>
-bool Dynamics<T>::lost_rank(const Factors& factors) {
-  if (factors.rows() == 0) return false;
-  const auto pivots = factors.matrixLU().diagonal().cwiseAbs();
-  return !(pivots.minCoeff() > zero_tolerance<T>() * pivots.maxCoeff());
-}
 
 template <class T>
 Motion<T> Dynamics<T>::place(const T& t, const std::vector<T>& q, const std::vector<T>& v) const {
@@ -212,25 +210,27 @@ void Dynamics<T>::begin(const Motion<T>& motion) {
 /// x += the least change in the mass metric that takes `errors` from the rows, to first order.
 template <class T>
 bool Dynamics<T>::correct(const std::vector<const Row*>& rows, const Vector& errors, std::vector<T>& x) const {
-  const int bodies = static_cast<int>(x.size()), size = bodies + static_cast<int>(rows.size());
-  Matrix matrix(size, size);
-  matrix.setZero();
-  for (int i = 0; i < bodies; ++i) matrix(i, i) = mechanism.mass(i);
-  for (int r = bodies; r < size; ++r) {
-    const Row& row = *rows[static_cast<std::size_t>(r - bodies)];
-    for (int j = 0; j < 3; ++j) {
-      const auto e = static_cast<std::size_t>(j);
-      if (row.a != ground) matrix(r, 3 * row.a + j) = matrix(3 * row.a + j, r) = row.on_a[e][0];
-      if (row.b != ground) matrix(r, 3 * row.b + j) = matrix(3 * row.b + j, r) = row.on_b[e][0];
-    }
+  const std::size_t bodies = x.size(), size = bodies + rows.size();
+  Matrix kkt = zero_matrix(static_cast<int>(size));
+  for (std::size_t i = 0; i < bodies; ++i) kkt[i][i] = mechanism.mass(static_cast<int>(i));
+  for (std::size_t r = bodies; r < size; ++r) {
+    const Row& row = *rows[r - bodies];
+    const auto set = [&](int body, const std::array<Node, 3>& entry) {
+      for (std::size_t j = 0; body != ground && j < 3; ++j) {
+        const std::size_t i = static_cast<std::size_t>(3 * body) + j;
+        kkt[r][i] = kkt[i][r] = entry[j][0];
+      }
+    };
+    set(row.a, row.on_a);
+    set(row.b, row.on_b);
   }
-  Vector right(size);
-  right.setZero();
-  right.tail(size - bodies) = -errors;
-  Factors factors(matrix);
-  if (lost_rank(factors)) return false;
-  const Vector change = factors.solve(right);
-  for (int i = 0; i < bodies; ++i) x[static_cast<std::size_t>(i)] += change(i);
+  Vector right(size, T(0));
+  for (std::size_t r = bodies; r < size; ++r) right[r] = -errors[r - bodies];
+  Elimination<T> factors;
+  factors.compute(std::move(kkt));
+  if (factors.lost_rank()) return false;
+  const Vector change = factors.solve(std::move(right));
+  for (std::size_t i = 0; i < bodies; ++i) x[i] += change[i];
   return true;
 }
 
@@ -241,11 +241,11 @@ bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
   for (const Constraint& c : constraints_) rows.push_back(c.row);
   const auto errors = [&](bool of_rates) {
     begin(motion);
-    Vector e(static_cast<Eigen::Index>(rows.size()));
+    Vector e;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      e(static_cast<Eigen::Index>(r)) = of_rates ? rows[r]->speed[0] : rows[r]->value[0];
+      e.push_back(of_rates ? rows[r]->speed[0] : rows[r]->value[0]);
       if (r >= constraints_.size() || constraints_[r].drive == none) continue;
-      e(static_cast<Eigen::Index>(r)) -= law_[static_cast<std::size_t>(constraints_[r].drive)][of_rates ? 1 : 0];
+      e.back() -= law_[static_cast<std::size_t>(constraints_[r].drive)][of_rates ? 1 : 0];
     }
     return e;
   };
@@ -254,7 +254,8 @@ bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
   for (int step = 0; step < most_steps && worst > 0; ++step) {
     const Vector e = errors(false);
     const T before = worst;
-    worst = e.size() == 0 ? T(0) : T(e.cwiseAbs().maxCoeff());
+    worst = T(0);
+    for (const T& x : e) worst = std::max(worst, T(abs(x)));
     if (step > 0 && worst >= before && worst < zero_tolerance<T>()) break;  // rounding
     if (!correct(rows, e, motion.position)) return false;
   }
@@ -265,22 +266,28 @@ bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
   for (int g = 0; g < guides(); ++g) {
     if (at_rest[static_cast<std::size_t>(g)]) rows.push_back(&sliding(g));
   }
-  // More guides at rest than freedom: their rows are redundant, and the constraints alone hold them.
-  if (!correct(rows, errors(true), motion.velocity)) motion.velocity = velocity;
+  // More guides at rest than freedom: their rows are redundant, and the constraints alone hold them. Nearly redundant,
+  // as at a dead centre: they would stop the whole mechanism, which only rounding of their speeds was to leave.
+  const auto largest = [](const Vector& x, const Vector& from) {
+    T most(0);
+    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, T(abs(x[i] - from[i])));
+    return most;
+  };
+  const bool held = correct(rows, errors(true), motion.velocity);
+  const Vector nothing(velocity.size(), T(0));
+  if (!held || largest(motion.velocity, velocity) > T(0x1p-20) * largest(velocity, nothing)) motion.velocity = velocity;
   return true;
 }
 
 template <class T>
-bool Dynamics<T>::solve(const Mode& mode, const Coefficients<T>& mu) {
+bool Dynamics<T>::solve(const Mode& mode, const Coefficients<T>& mu, const std::vector<T>& applied) {
   mode_ = mode;
   mu_ = mu;
+  applied_ = applied;
   solution_.clear();
   assemble();
-  Matrix matrix(size_, size_);
-  matrix.setZero();
-  for (const Entry& e : entries_) matrix(e.row, e.column) += e.weight * e.node[0];
-  factors_.compute(matrix);
-  if (lost_rank(factors_)) return false;
+  factors_.compute(matrix());
+  if (factors_.lost_rank()) return false;
   solve_order(0);
   return true;
 }
@@ -301,35 +308,61 @@ void Dynamics<T>::extend() {
 }
 
 template <class T>
+typename Dynamics<T>::Matrix Dynamics<T>::matrix() const {
+  Matrix rows = zero_matrix(size_);
+  for (const Entry& e : entries_) {
+    rows[static_cast<std::size_t>(e.row)][static_cast<std::size_t>(e.column)] += e.weight * e.node[0];
+  }
+  return rows;
+}
+
+template <class T>
 bool Dynamics<T>::contact_problem(const Mode& mode, const Coefficients<T>& mu, ContactProblem& problem) {
+  const auto n = static_cast<std::size_t>(contacts()), first = static_cast<std::size_t>(unknown_of_contact(0));
   mode_ = mode;
   mu_ = mu;
-  assemble();
-  const int n = contacts(), first = unknown_of_contact(0);
-  Matrix whole(size_, size_);  // with the forces of + contacts in their columns, if all signs are +
-  whole.setZero();
-  for (const Entry& e : entries_) whole(e.row, e.column) += e.weight * e.node[0];
-  for (int& sign : mode_.sign) sign = -sign;
-  assemble();
-  Matrix other(size_, size_);
-  other.setZero();
-  for (const Entry& e : entries_) other(e.row, e.column) += e.weight * e.node[0];
-  const Factors factors(whole.topLeftCorner(first, first));
-  if (lost_rank(factors)) return false;
-  const Vector right = right_side(0);
-  const Matrix rows = whole.block(first, 0, n, first);
-  const Matrix plus = -rows * factors.solve(Matrix(whole.block(0, first, first, n)));
-  const Matrix minus = -rows * factors.solve(Matrix(other.block(0, first, first, n)));
-  const Vector b = right.segment(first, n) - rows * factors.solve(Vector(right.head(first)));
-  problem = {n, {}, {}, {}};
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const bool positive = mode.sign[static_cast<std::size_t>(j)] > 0;
-      problem.plus.push_back(positive ? plus(i, j) : minus(i, j));
-      problem.minus.push_back(positive ? minus(i, j) : plus(i, j));
-    }
-    problem.b.push_back(b(i));
+  applied_.clear();
+  const auto with_signs = [&](int sign) {
+    mode_.sign.assign(n, sign);
+    assemble();
+    return matrix();
+  };
+  const Matrix plus = with_signs(1), minus = with_signs(-1);
+  const auto without_contacts = [&](Vector x) {
+    x.erase(x.begin() + static_cast<std::ptrdiff_t>(first), x.begin() + static_cast<std::ptrdiff_t>(first + n));
+    return x;
+  };
+  Matrix rest;
+  for (std::size_t i = 0; i < plus.size(); ++i) {
+    if (i < first || i >= first + n) rest.push_back(without_contacts(plus[i]));
   }
+  Elimination<T> factors;
+  factors.compute(std::move(rest));
+  if (factors.lost_rank()) return false;
+  const auto response = [&](const Vector& whole) {  // of each contact's row
+    const Vector x = factors.solve(without_contacts(whole));
+    Vector in_rows(n, T(0));
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector row = without_contacts(plus[first + i]);
+      for (std::size_t j = 0; j < x.size(); ++j) in_rows[i] += row[j] * x[j];
+    }
+    return in_rows;
+  };
+  const auto column = [&](const Matrix& from, std::size_t contact) {
+    Vector x;
+    for (const Vector& row : from) x.push_back(row[first + contact]);
+    return response(x);
+  };
+  problem = {contacts(), Vector(n * n), Vector(n * n), Vector(n)};
+  for (std::size_t j = 0; j < n; ++j) {
+    const Vector of_plus = column(plus, j), of_minus = column(minus, j);
+    for (std::size_t i = 0; i < n; ++i) {
+      problem.plus[i * n + j] = -of_plus[i];
+      problem.minus[i * n + j] = -of_minus[i];
+    }
+  }
+  const Vector right = right_side(0), free = response(right);
+  for (std::size_t i = 0; i < n; ++i) problem.b[i] = right[first + i] - free[i];
   return true;
 }
 
@@ -383,28 +416,26 @@ void Dynamics<T>::assemble() {
 
 template <class T>
 typename Dynamics<T>::Vector Dynamics<T>::right_side(int k) const {
-  Vector b(size_);
-  const int bodies = 3 * mechanism.bodies();
-  for (int i = 0; i < bodies; ++i) b(i) = mechanism.force[static_cast<std::size_t>(i)][k];
-  int equation = bodies;
+  Vector b(static_cast<std::size_t>(size_), T(0));
+  for (std::size_t i = 0; i < mechanism.force.size(); ++i) b[i] = mechanism.force[i][k];
+  std::size_t equation = mechanism.force.size();
   for (const Constraint& c : constraints_) {
-    b(equation) = -(c.row->turning[k] + c.alpha * c.row->speed[k] + c.beta * c.row->value[k]);
+    b[equation] = -(c.row->turning[k] + c.alpha * c.row->speed[k] + c.beta * c.row->value[k]);
     if (c.drive != none) {
       const auto& f = law_[static_cast<std::size_t>(c.drive)];
       const auto o = static_cast<std::size_t>(k);
-      b(equation) += T((k + 1) * (k + 2)) * f[o + 2] + c.alpha * T(k + 1) * f[o + 1] + c.beta * f[o];
+      b[equation] += T((k + 1) * (k + 2)) * f[o + 2] + c.alpha * T(k + 1) * f[o + 1] + c.beta * f[o];
     }
     ++equation;
   }
   for (int g = 0; g < guides(); ++g) {
     const Row& row = sliding(g);
-    if (stuck(g)) b(equation++) = -row.turning[k];
-    const T preload = -T(mode_.slip[static_cast<std::size_t>(g)]) * guide(g).preload;
-    if (preload == 0) continue;
-    for (int j = 0; j < 3; ++j) {
-      const auto e = static_cast<std::size_t>(j);
-      if (row.a != ground) b(3 * row.a + j) += preload * row.on_a[e][k];
-      if (row.b != ground) b(3 * row.b + j) += preload * row.on_b[e][k];
+    if (stuck(g)) b[equation++] = -row.turning[k];
+    const T steady = applied(g) - T(mode_.slip[static_cast<std::size_t>(g)]) * guide(g).preload;
+    if (steady == 0) continue;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (row.a != ground) b[static_cast<std::size_t>(3 * row.a) + j] += steady * row.on_a[j][k];
+      if (row.b != ground) b[static_cast<std::size_t>(3 * row.b) + j] += steady * row.on_b[j][k];
     }
   }
   return b;
@@ -416,17 +447,17 @@ void Dynamics<T>::solve_order(int k) {
   for (const Entry& e : entries_) {
     if (e.node.is_constant()) continue;
     T sum(0);
-    for (int j = 1; j <= k; ++j) sum += e.node[j] * solution_[static_cast<std::size_t>(k - j)](e.column);
-    b(e.row) -= e.weight * sum;
+    for (int j = 1; j <= k; ++j) sum += e.node[j] * unknown(e.column, k - j);
+    b[static_cast<std::size_t>(e.row)] -= e.weight * sum;
   }
-  solution_.push_back(factors_.solve(b));
+  solution_.push_back(factors_.solve(std::move(b)));
 }
 
 template <class T>
 T Dynamics<T>::friction(int g, int order) const {
   const T viscous = guide(g).viscous * sliding(g).speed[order];
   if (stuck(g)) return unknown(friction_unknown_[static_cast<std::size_t>(g)], order) - viscous;
-  return -T(mode_.slip[static_cast<std::size_t>(g)]) * limit(g, order) - viscous;
+  return (order == 0 ? applied(g) : T(0)) - T(mode_.slip[static_cast<std::size_t>(g)]) * limit(g, order) - viscous;
 }
 
 template <class T>

@@ -6,6 +6,7 @@
 // no tolerance in time.
 #pragma once
 
+#include <optional>
 #include <slideway/oracle/dynamics.hpp>
 #include <utility>
 
@@ -49,6 +50,8 @@ template <class T>
 class FrictionLaw {
  public:
   static constexpr int most_modes = 4096;  ///< tried at an instant
+  /// From as many signs on, those that the contacts' problem alone excludes are not tried in the whole system.
+  static constexpr int many_signs = 32;
   /// Orders of the series that decide ties. What vanishes to all of them is zero for good.
   static constexpr int tie_orders = 6;
   /// Orders that the dynamics need for that.
@@ -83,21 +86,29 @@ class FrictionLaw {
   bool guide_is_rough(int g) const { return dynamics_.guide(g).rough(); }
   int sign_after(const Condition& condition, bool from_rest);
   T scale(const Condition& condition, int order) const;
+  T largest_load() const;
+  T push() const;
+  bool same(const Solution<T>& a, const Solution<T>& b) const;
   bool is_allowed(const Mode& mode, const std::vector<bool>& at_rest, const Coefficients<T>& mu,
                   std::vector<Condition>* violated);
   Solution<T> read(const Mode& mode, const std::vector<bool>& at_rest);
   bool search(const std::vector<bool>& at_rest, const Coefficients<T>& mu, Mode mode, std::vector<Solution<T>>& found);
   Mode first_mode(const std::vector<bool>& at_rest) const;
+  std::vector<Mode> modes(const Mode& slips, const Coefficients<T>& mu);
+  std::vector<Solution<T>> jammed(const std::vector<bool>& at_rest, const Coefficients<T>& mu);
+  std::vector<Solution<T>> jammed(int given, const Mode& mode, const std::vector<bool>& at_rest,
+                                  const Coefficients<T>& mu);
 
   Dynamics<T>& dynamics_;
 };
 
 namespace detail {
 
+/// Equal to rounding, beside the largest of them and `size`.
 template <class T>
-bool close(const std::vector<T>& a, const std::vector<T>& b) {
+bool close(const std::vector<T>& a, const std::vector<T>& b, T size) {
   using std::abs;
-  T difference(0), size(0);
+  T difference(0);
   for (std::size_t i = 0; i < a.size(); ++i) {
     difference = std::max(difference, T(abs(a[i] - b[i])));
     size = std::max(size, T(abs(a[i]) + abs(b[i])));
@@ -114,13 +125,14 @@ std::vector<bool> FrictionLaw<T>::find_at_rest(const Motion<T>& motion, const T&
   std::vector<bool> at_rest;
   for (int g = 0; g < dynamics_.guides(); ++g) {
     const auto& row = dynamics_.sliding(g);
-    T size(0);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto term = [&](int body, const auto& entry) {
-        return body == ground ? T(0) : T(abs(entry[j][0] * motion.velocity[static_cast<std::size_t>(3 * body) + j]));
-      };
-      size += term(row.a, row.on_a) + term(row.b, row.on_b);
-    }
+    T size(0);  // what the row could make of the speeds in any direction: each of its terms can vanish with v
+    const auto add = [&](int body, const auto& entry) {
+      if (body == ground) return;
+      const T* v = &motion.velocity[static_cast<std::size_t>(3 * body)];
+      size += abs(v[0]) + abs(v[1]) + abs(entry[2][0] * v[2]);
+    };
+    add(row.a, row.on_a);
+    add(row.b, row.on_b);
     at_rest.push_back(guide_is_rough(g) && abs(row.speed[0]) <= tolerance * size);
   }
   return at_rest;
@@ -177,23 +189,45 @@ T FrictionLaw<T>::value(const Condition& condition, int order) const {
   return dynamics_.margin(condition.index, condition.sign, order);
 }
 
-/// What a coefficient is compared with: the largest force, or speed, of the same order.
+/// The largest applied force, N: what forces are compared with that may all be zero.
+template <class T>
+T FrictionLaw<T>::largest_load() const {
+  using std::abs;
+  T most(0);
+  for (const auto& force : dynamics_.mechanism.force) most = std::max(most, T(abs(force[0])));
+  return most;
+}
+
+/// What it makes of the heaviest body, m/s^2.
+template <class T>
+T FrictionLaw<T>::push() const {
+  T heaviest(0);
+  for (int i = 0; i < 3 * dynamics_.mechanism.bodies(); i += 3)
+    heaviest = std::max(heaviest, dynamics_.mechanism.mass(i));
+  return heaviest > 0 ? T(largest_load() / heaviest) : T(0);
+}
+
+/// What a coefficient is compared with: the largest force, or speed, of this order and those before (time in seconds),
+/// and for speeds what the loads would make of them. At rest under constant loads all speeds and all rates of forces
+/// are rounding: only the loads tell of what.
 template <class T>
 T FrictionLaw<T>::scale(const Condition& condition, int order) const {
   using std::abs;
-  T most(0);
-  const int bodies = 3 * dynamics_.mechanism.bodies();
-  for (int i = 0; i < bodies; ++i) {
-    const auto raise = [&](const T& x) { most = std::max(most, T(abs(x))); };
-    if (condition.kind == Condition::slip) {
-      raise(T(order + 1) * dynamics_.mechanism.position(i)[order + 1]);
-    } else {
-      raise(dynamics_.mechanism.force[static_cast<std::size_t>(i)][order]);
-      raise(dynamics_.mechanism.mass(i) * dynamics_.unknown(i, order));
+  const auto& mechanism = dynamics_.mechanism;
+  const bool of_slip = condition.kind == Condition::slip;
+  T most = of_slip ? push() : T(0);
+  const auto raise = [&](const T& x) { most = std::max(most, T(abs(x))); };
+  for (int k = 0; k <= order; ++k) {
+    for (int i = 0; i < 3 * mechanism.bodies(); ++i) {
+      if (of_slip) {
+        raise(T(k + 1) * mechanism.position(i)[k + 1]);
+      } else {
+        raise(mechanism.force[static_cast<std::size_t>(i)][k]);
+        raise(mechanism.mass(i) * dynamics_.unknown(i, k));
+      }
     }
+    for (int c = 0; !of_slip && c < dynamics_.contacts(); ++c) raise(dynamics_.lambda(c, k));
   }
-  if (condition.kind == Condition::slip) return most;
-  for (int c = 0; c < dynamics_.contacts(); ++c) most = std::max(most, T(abs(dynamics_.lambda(c, order))));
   return most;
 }
 
@@ -247,32 +281,150 @@ Solution<T> FrictionLaw<T>::read(const Mode& mode, const std::vector<bool>& at_r
 }
 
 template <class T>
+bool FrictionLaw<T>::same(const Solution<T>& a, const Solution<T>& b) const {
+  return detail::close(a.acceleration, b.acceleration, push()) && detail::close(a.lambda, b.lambda, largest_load()) &&
+         detail::close(a.friction, b.friction, largest_load());
+}
+
+/// The modes with given slips: all signs; if these are many and the contacts' problem exists, those signs that its
+/// solution in the same arithmetic has, up to what could be rounding.
+template <class T>
+std::vector<Mode> FrictionLaw<T>::modes(const Mode& slips, const Coefficients<T>& mu) {
+  using std::abs;
+  std::vector<std::size_t> rough;
+  for (std::size_t c = 0; c < slips.sign.size(); ++c) {
+    if (mu[static_cast<std::size_t>(dynamics_.mechanism.guide_of[c])] > 0) rough.push_back(c);
+  }
+  const std::size_t all = std::size_t{1} << rough.size(), n = slips.sign.size();
+  typename Dynamics<T>::ContactProblem problem;
+  const bool reduced = all >= static_cast<std::size_t>(many_signs) && dynamics_.contact_problem(slips, mu, problem);
+  const auto possible = [&](const Mode& mode) {
+    typename Elimination<T>::Rows w(n, std::vector<T>(n));
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) w[i][j] = (mode.sign[j] > 0 ? problem.plus : problem.minus)[i * n + j];
+    }
+    Elimination<T> factors;
+    factors.compute(std::move(w));
+    if (factors.lost_rank()) return true;
+    const std::vector<T> x = factors.solve(problem.b);
+    T most(0);
+    for (const T& force : x) most = std::max(most, T(abs(force)));
+    return std::all_of(rough.begin(), rough.end(),
+                       [&](std::size_t c) { return T(mode.sign[c]) * x[c] >= -zero_tolerance<T>() * most; });
+  };
+  std::vector<Mode> found;
+  for (std::size_t number = 0; number < all; ++number) {
+    Mode mode = slips;
+    for (std::size_t k = 0; k < rough.size(); ++k) mode.sign[rough[k]] = (number >> k) % 2 == 0 ? 1 : -1;
+    if (!reduced || possible(mode)) found.push_back(mode);
+  }
+  return found;
+}
+
+template <class T>
 std::vector<Solution<T>> FrictionLaw<T>::solutions(const Motion<T>& motion, const std::vector<bool>& at_rest,
                                                    const Coefficients<T>& mu) {
   std::vector<Solution<T>> found;
   dynamics_.begin(motion);
-  const int modes = count(at_rest, mu);
-  if (modes > most_modes) return found;
-  for (int number = 0; number < modes; ++number) {
-    Mode mode = first_mode(at_rest);
+  if (count(at_rest, mu) > most_modes) return found;
+  const auto add = [&](const Solution<T>& solution) {
+    if (std::none_of(found.begin(), found.end(), [&](const auto& other) { return same(other, solution); })) {
+      found.push_back(solution);
+    }
+  };
+  int choices = 1;
+  for (const bool rests : at_rest) choices *= rests ? 3 : 1;
+  for (int number = 0; number < choices; ++number) {
+    Mode slips = first_mode(at_rest);
     int digits = number;
-    for (std::size_t g = 0; g < mode.slip.size(); ++g) {
+    for (std::size_t g = 0; g < slips.slip.size(); ++g) {
       if (!at_rest[g]) continue;
-      mode.slip[g] = digits % 3 == 2 ? -1 : digits % 3;
+      slips.slip[g] = digits % 3 == 2 ? -1 : digits % 3;
       digits /= 3;
     }
-    for (std::size_t c = 0; c < mode.sign.size(); ++c) {
-      if (!(mu[static_cast<std::size_t>(dynamics_.mechanism.guide_of[c])] > 0)) continue;
-      mode.sign[c] = digits % 2 == 0 ? 1 : -1;
-      digits /= 2;
+    for (const Mode& mode : modes(slips, mu)) {
+      if (is_allowed(mode, at_rest, mu, nullptr)) add(read(mode, at_rest));
     }
-    if (!is_allowed(mode, at_rest, mu, nullptr)) continue;
-    const Solution<T> solution = read(mode, at_rest);
-    const bool known = std::any_of(found.begin(), found.end(), [&](const Solution<T>& other) {
-      return detail::close(other.acceleration, solution.acceleration) && detail::close(other.lambda, solution.lambda) &&
-             detail::close(other.friction, solution.friction);
-    });
-    if (!known) found.push_back(solution);
+  }
+  for (const Solution<T>& solution : jammed(at_rest, mu)) add(solution);
+  return found;
+}
+
+/// All guides at rest held, where that is one more than the freedom there is: with friction of guide `given` as a
+/// parameter s, all forces are affine in s, and the conditions leave an interval of s. Its finite ends, and a point
+/// more if it has only one. Nothing if the freedom is not such.
+template <class T>
+std::vector<Solution<T>> FrictionLaw<T>::jammed(int given, const Mode& mode, const std::vector<bool>& at_rest,
+                                                const Coefficients<T>& mu) {
+  using std::abs;
+  const auto at = static_cast<std::size_t>(given);
+  Mode free = mode;
+  free.slip[at] = 1;
+  Coefficients<T> other = mu;
+  other[at] = T(0);
+  const auto solve = [&](const T& s) {
+    std::vector<T> applied(mu.size(), T(0));
+    applied[at] = s + dynamics_.guide(given).preload;
+    return dynamics_.solve(free, other, applied);
+  };
+  // Everything that must be >= 0.
+  const auto margins = [&] {
+    std::vector<T> all;
+    for (const Condition& condition : conditions(mode, at_rest, mu, false)) {
+      if (condition.kind != Condition::hold || condition.index != given) {
+        all.push_back(value(condition, 0));
+        continue;
+      }
+      T limit = dynamics_.guide(given).preload - T(condition.sign) * dynamics_.friction(given, 0);
+      for (int c = 0; c < dynamics_.contacts(); ++c) {
+        if (dynamics_.mechanism.guide_of[static_cast<std::size_t>(c)] != given) continue;
+        limit += mu[at] * T(mode.sign[static_cast<std::size_t>(c)]) * dynamics_.lambda(c, 0);
+      }
+      all.push_back(limit);
+    }
+    return all;
+  };
+  if (!solve(T(0)) || sign_after({Condition::slip, given, 1}, true) != 0) return {};
+  const std::vector<T> start = margins();
+  const T unit = std::max(T(largest_load()), T(scale({Condition::hold, given, 1}, 0)));
+  if (unit == 0 || !solve(unit)) return {};
+  const std::vector<T> end = margins();
+  std::optional<T> low, high;  // of s / unit
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const T slope = end[i] - start[i];
+    if (abs(slope) <= zero_tolerance<T>() * unit) {
+      if (start[i] < -zero_tolerance<T>() * unit) return {};
+      continue;
+    }
+    const T root = -start[i] / slope;
+    if (slope > 0) low = low ? std::max(*low, root) : root;
+    if (slope < 0) high = high ? std::min(*high, root) : root;
+  }
+  if (low && high && *high < *low - zero_tolerance<T>()) return {};
+  std::vector<T> points;
+  if (low) points.push_back(*low);
+  if (high) points.push_back(*high);
+  if (points.size() < 2) points.push_back(low ? T(*low + 1) : high ? T(*high - 1) : T(0));
+  std::vector<Solution<T>> found;
+  for (const T& point : points) {
+    if (!solve(point * unit)) continue;
+    found.push_back(read(free, at_rest));
+    found.back().mode = mode;
+    found.back().at_rest = at_rest;
+  }
+  return found;
+}
+
+/// Ways to hold all guides at rest that no single mode has: see above.
+template <class T>
+std::vector<Solution<T>> FrictionLaw<T>::jammed(const std::vector<bool>& at_rest, const Coefficients<T>& mu) {
+  const Mode held = first_mode(at_rest);
+  const auto rests = std::find(at_rest.begin(), at_rest.end(), true);
+  if (rests == at_rest.end() || dynamics_.solve(held, mu)) return {};
+  std::vector<Solution<T>> found;
+  for (const Mode& mode : modes(held, mu)) {
+    const auto more = jammed(static_cast<int>(rests - at_rest.begin()), mode, at_rest, mu);
+    found.insert(found.end(), more.begin(), more.end());
   }
   return found;
 }
@@ -288,8 +440,9 @@ bool FrictionLaw<T>::search(const std::vector<bool>& at_rest, const Coefficients
       found.push_back(read(mode, at_rest));
       return true;
     }
-    if (violated.empty()) return false;                // singular
-    if (trial >= most_trials / 2) violated.resize(1);  // least-index: slow, but it does not cycle on W-problems
+    if (violated.empty()) return false;  // singular
+    if (trial >= most_trials / 2)
+      violated.erase(violated.begin() + 1, violated.end());  // least-index: slow, but it does not cycle on W-problems
     for (const Condition& condition : violated) {
       const auto i = static_cast<std::size_t>(condition.index);
       if (condition.kind == Condition::face) mode.sign[i] = -mode.sign[i];
@@ -325,7 +478,7 @@ Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bo
     const auto resting = [](const Solution<T>& s) { return std::count(s.at_rest.begin(), s.at_rest.end(), true); };
     std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return resting(a) > resting(b); });
     several = several || std::any_of(found.begin(), found.end(), [&](const Solution<T>& s) {
-                return !detail::close(s.acceleration, found.front().acceleration);
+                return !detail::close(s.acceleration, found.front().acceleration, push());
               });
     decision.verdict = !complete          ? Verdict::unverified
                        : several          ? Verdict::several

@@ -1,7 +1,6 @@
 // The oracle's number: 50 decimal digits, in which every double is exact.
 #pragma once
 
-#include <boost/multiprecision/eigen.hpp>
 #include <boost/multiprecision/mpfr.hpp>
 
 namespace slideway::oracle {
@@ -18,6 +17,12 @@ T zero_tolerance() {
   using std::pow;
   static const T tolerance = pow(std::numeric_limits<T>::epsilon(), T(0.6));
   return tolerance;
+}
+
+/// The larger of two errors; NaN if either is: an error that is not a number is the worst.
+template <class T>
+T worse(const T& a, const T& b) {
+  return a != a || a >= b ? a : b;
 }
 
 }  // namespace slideway::oracle

@@ -33,16 +33,25 @@ std::vector<T> bernstein(std::vector<T> a) {
   return a;
 }
 
-/// Number of sign changes, 2 standing for more; what is within `noise` of zero counts as no sign.
+/// Signs of coefficients, 0 within `noise`: the first and the last, how often they change, whether there are any.
+struct Signs {
+  int first = 0, last = 0, changes = 0;
+  bool positive = false, negative = false;
+};
+
 template <class T>
-int variations(const std::vector<T>& b, const T& noise) {
-  int count = 0, last = 0;
+Signs signs(const std::vector<T>& b, const T& noise) {
+  Signs s;
+  int previous = 0;
   for (const T& x : b) {
-    const int sign = x > noise ? 1 : x < -noise ? -1 : 0;
-    if (sign * last < 0) ++count;
-    if (sign != 0) last = sign;
+    s.last = x > noise ? 1 : x < -noise ? -1 : 0;
+    if (&x == &b.front()) s.first = s.last;
+    if (s.last * previous < 0) ++s.changes;
+    if (s.last != 0) previous = s.last;
+    s.positive = s.positive || s.last > 0;
+    s.negative = s.negative || s.last < 0;
   }
-  return std::min(count, 2);
+  return s;
 }
 
 /// The one root in [low, high] at whose ends the polynomial has opposite signs: bisection until Newton's steps stay
@@ -68,10 +77,11 @@ T refine(const std::vector<T>& power, T low, T high) {
 template <class T>
 std::optional<T> first_root(const std::vector<T>& power, const std::vector<T>& b, const T& low, const T& high,
                             const T& noise) {
-  const int changes = variations(b, noise);
-  if (changes == 0) return std::nullopt;
-  if (changes == 1) return refine(power, low, high);
-  if (high - low < zero_tolerance<T>()) return high;  // a root that is as good as double: grazing
+  const Signs s = signs(b, noise);
+  if (!s.negative) return std::nullopt;
+  if (!s.positive && s.last < 0) return low;  // zero there, and falls at once
+  if (s.first > 0 && s.last < 0 && s.changes == 1) return refine(power, low, high);
+  if (high - low < zero_tolerance<T>()) return low;  // a root that is as good as double: grazing
   const T middle = (low + high) / 2;
   std::vector<T> left = b, right = b;  // de Casteljau
   for (std::size_t pass = 1; pass < b.size(); ++pass) {
@@ -99,7 +109,10 @@ std::optional<T> first_root(std::vector<T> a) {
   a.erase(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(first));  // divided by x^first
   if (a.empty()) return std::nullopt;
   if (a.front() < 0) return T(0);
-  return detail::first_root(a, detail::bernstein(a), T(0), T(1), noise);
+  const std::vector<T> b = detail::bernstein(a);
+  const auto root = detail::first_root(a, b, T(0), T(1), noise);
+  if (root || b.size() < 2) return root;
+  return abs(b.back()) <= noise && b[b.size() - 2] > noise ? std::optional<T>(1) : std::nullopt;
 }
 
 }  // namespace slideway::oracle

@@ -14,6 +14,8 @@ namespace slideway::oracle {
 
 template <class T>
 class Tape {
+  enum class Kind { variable, sum, shift, scale, product, reciprocal, root, rate, sine, cosine };
+
  public:
   /// A quantity: a constant, or an entry of a tape.
   class Node {
@@ -99,7 +101,6 @@ class Tape {
   }
 
  private:
-  enum class Kind { variable, sum, shift, scale, product, reciprocal, root, rate, sine, cosine };
   struct Op {
     Kind kind;
     int a, b;
