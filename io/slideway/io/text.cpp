@@ -91,7 +91,7 @@ FileText read_text(const std::string& file, std::size_t limit) {
   result.text.resize(limit + 1);
   result.text.resize(std::fread(result.text.data(), 1, limit + 1, stream.get()));
   if (std::ferror(stream.get()) != 0) return {{}, "cannot be read: " + std::generic_category().message(errno)};
-  if (result.text.size() > limit) return {{}, fmt::format("has more than {} KiB, too much for a scene", limit / 1024)};
+  if (result.text.size() > limit) return {{}, fmt::format("has more than {} KiB", limit / 1024)};
   return result;
 }
 
