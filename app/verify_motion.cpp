@@ -145,6 +145,8 @@ const char* why(oracle::End end) {
       return "no contact forces satisfy the equations from there on";
     case oracle::End::not_unique:
       return "several motions are possible from there on";
+    case oracle::End::undecided:
+      return "no mode was found, and there are too many to try them all";
     case oracle::End::singular:
       return "the constraints lose rank there";
     case oracle::End::too_many_events:

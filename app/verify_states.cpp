@@ -22,7 +22,7 @@ oracle::ClaimedInstant claim_of(const KernelRun& run, std::size_t i) {
 bool is_true(Uniqueness claim, const oracle::InstantCheck& found) {
   using oracle::Verdict;
   if (found.verdict == Verdict::none) return false;
-  if (found.verdict == Verdict::unverified) return true;
+  if (found.verdict == Verdict::unverified || found.verdict == Verdict::undecided) return true;
   switch (claim) {
     case Uniqueness::certified:
       return found.solutions == 1 && (!found.decided || found.certified);
@@ -87,7 +87,7 @@ CheckGroup check_states(const Preparation& prepared, Verification& verification,
     count(slip, !found.against_slip, claim.t);
     count(uniqueness, !is_true(run.uniqueness[i], found), claim.t);
     undecided = undecided || (!found.decided && run.uniqueness[i] == Uniqueness::certified);
-    untried = untried || found.verdict == oracle::Verdict::unverified;
+    untried = untried || found.verdict == oracle::Verdict::unverified || found.verdict == oracle::Verdict::undecided;
     progress.show(static_cast<double>(i) / static_cast<double>(count_of_samples), "of the states");
   }
   if (untried) {

@@ -92,7 +92,7 @@ class Modes : public Base {
   void decide(oracle::Motion<oracle::Real> motion, const std::vector<bool>& at_rest) {
     const std::vector<bool> none_at_rest(at_rest.size(), false);
     if (!exact_.project(motion, none_at_rest)) throw std::runtime_error("off the constraints");
-    const auto decision = exact_law_.decide(motion, at_rest, mode_);
+    const auto decision = exact_law_.decide(motion, at_rest);
     if (decision.verdict == oracle::Verdict::none || decision.verdict == oracle::Verdict::several) {
       throw std::runtime_error("Coulomb's law does not allow one motion alone");
     }

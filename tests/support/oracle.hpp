@@ -87,7 +87,7 @@ struct AtStart {
     for (const auto& guide : dynamics.mechanism.model.guide) mu.push_back(guide.mu);
     return law.solutions(motion, at_rest, mu);
   }
-  oracle::Decision<Real> decide() { return law.decide(motion, law.find_at_rest(motion, Real(1e-12)), {}); }
+  oracle::Decision<Real> decide() { return law.decide(motion, law.find_at_rest(motion, Real(1e-12))); }
 
   oracle::Dynamics<Real> dynamics;
   oracle::FrictionLaw<Real> law;

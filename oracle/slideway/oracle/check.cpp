@@ -73,14 +73,12 @@ InstantCheck Checker::check(const ClaimedInstant& claim) {
   check_claims(claim, result);
   const Motion<Real> motion = place(claim, 0);
   std::vector<bool> at_rest;
-  Mode guess;
   for (int g = 0; g < dynamics_.guides(); ++g) {
     at_rest.push_back(dynamics_.guide(g).rough() && claim.mode[static_cast<std::size_t>(g)] == 0);
   }
-  for (const double x : claim.lambda) guess.sign.push_back(x < 0 ? -1 : 1);
-  const Decision<Real> decision = law_.decide(motion, at_rest, guess);
+  const Decision<Real> decision = law_.decide(motion, at_rest);
   result.verdict = decision.verdict;
-  if (decision.verdict == Verdict::none) return result;
+  if (decision.solutions.empty()) return result;
   result.solutions = decision.verdict == Verdict::unverified ? 0 : static_cast<int>(decision.solutions.size());
 
   // Where there are several, the claim is held against the nearest.

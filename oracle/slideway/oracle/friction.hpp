@@ -17,7 +17,8 @@ enum class Verdict {
   motion_only,  ///< one motion, several sets of forces: one of them is given
   none,         ///< no mode is allowed
   several,      ///< several motions: one that keeps most guides at rest comes first
-  unverified    ///< more modes than are tried: the one found by changing what was violated
+  unverified,   ///< more modes than are tried: one that is allowed
+  undecided     ///< more modes than are tried, and none of those was allowed
 };
 
 /// Something that a mode assumes: a quantity that is >= 0 while the mode lasts.
@@ -63,14 +64,14 @@ class FrictionLaw {
   std::vector<bool> find_at_rest(const Motion<T>& motion, const T& tolerance);
 
   /// All allowed modes with the given coefficients; guides that are not at rest slip as their speed says. Each solution
-  /// is given once. Nothing, if there are more than most_modes.
+  /// is given once. With more than most_modes: of those with the signs that iteration finds.
   std::vector<Solution<T>> solutions(const Motion<T>& motion, const std::vector<bool>& at_rest,
                                      const Coefficients<T>& mu);
 
   /// What a right program takes: mu_static decides which guides leave rest, mu acts on those that do, from then on.
   /// When one has left, others may follow or it may be held after all: repeated until no guide joins. Rest is
-  /// preferred. `guess` is where the search starts if there are too many modes to try.
-  Decision<T> decide(const Motion<T>& motion, const std::vector<bool>& at_rest, const Mode& guess);
+  /// preferred.
+  Decision<T> decide(const Motion<T>& motion, const std::vector<bool>& at_rest);
 
   /// Modes of an instant, at most most_modes + 1.
   int count(const std::vector<bool>& at_rest, const Coefficients<T>& mu) const;
@@ -89,11 +90,13 @@ class FrictionLaw {
   T largest_load() const;
   T push() const;
   bool same(const Solution<T>& a, const Solution<T>& b) const;
-  bool is_allowed(const Mode& mode, const std::vector<bool>& at_rest, const Coefficients<T>& mu,
-                  std::vector<Condition>* violated);
+  bool is_allowed(const Mode& mode, const std::vector<bool>& at_rest, const Coefficients<T>& mu);
   Solution<T> read(const Mode& mode, const std::vector<bool>& at_rest);
-  bool search(const std::vector<bool>& at_rest, const Coefficients<T>& mu, Mode mode, std::vector<Solution<T>>& found);
   Mode first_mode(const std::vector<bool>& at_rest) const;
+  using Problem = typename Dynamics<T>::ContactProblem;
+  static std::optional<std::vector<T>> forces(const Problem& problem, const std::vector<int>& sign);
+  static std::vector<int> signs(const std::vector<T>& x);
+  static std::vector<int> iterate(const Problem& problem);
   std::vector<Mode> modes(const Mode& slips, const Coefficients<T>& mu);
   std::vector<Solution<T>> jammed(const std::vector<bool>& at_rest, const Coefficients<T>& mu);
   std::vector<Solution<T>> jammed(int given, const Mode& mode, const std::vector<bool>& at_rest,
@@ -243,20 +246,13 @@ int FrictionLaw<T>::sign_after(const Condition& condition, bool from_rest) {
   return 0;
 }
 
-/// Solves in the mode and examines its conditions: all of them if `violated` is asked for, else up to the first that
-/// fails.
+/// Solves in the mode and examines its conditions.
 template <class T>
-bool FrictionLaw<T>::is_allowed(const Mode& mode, const std::vector<bool>& at_rest, const Coefficients<T>& mu,
-                                std::vector<Condition>* violated) {
+bool FrictionLaw<T>::is_allowed(const Mode& mode, const std::vector<bool>& at_rest, const Coefficients<T>& mu) {
   if (!dynamics_.solve(mode, mu)) return false;
-  bool allowed = true;
-  for (const Condition& condition : conditions(mode, at_rest, mu, false)) {
-    if (sign_after(condition, condition.kind == Condition::slip) >= 0) continue;
-    allowed = false;
-    if (violated == nullptr) return false;
-    violated->push_back(condition);
-  }
-  return allowed;
+  const std::vector<Condition> all = conditions(mode, at_rest, mu, false);
+  return std::all_of(all.begin(), all.end(),
+                     [&](const Condition& c) { return sign_after(c, c.kind == Condition::slip) >= 0; });
 }
 
 /// The solution that the dynamics have. A guide that leaves rest with a speed that stays zero is at rest at its limit.
@@ -286,39 +282,85 @@ bool FrictionLaw<T>::same(const Solution<T>& a, const Solution<T>& b) const {
          detail::close(a.friction, b.friction, largest_load());
 }
 
-/// The modes with given slips: all signs; if these are many and the contacts' problem exists, those signs that its
-/// solution in the same arithmetic has, up to what could be rounding.
+/// The contacts' forces with given signs, by their own problem. Nothing if it is singular for them.
+template <class T>
+std::optional<std::vector<T>> FrictionLaw<T>::forces(const Problem& problem, const std::vector<int>& sign) {
+  const auto n = static_cast<std::size_t>(problem.n);
+  typename Elimination<T>::Rows w(n, std::vector<T>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) w[i][j] = (sign[j] > 0 ? problem.plus : problem.minus)[i * n + j];
+  }
+  Elimination<T> factors;
+  factors.compute(std::move(w));
+  if (factors.lost_rank()) return std::nullopt;
+  return factors.solve(problem.b);
+}
+
+/// -1, +1, or 0 for what is rounding beside the largest.
+template <class T>
+std::vector<int> FrictionLaw<T>::signs(const std::vector<T>& x) {
+  using std::abs;
+  T most(0);
+  for (const T& force : x) most = std::max(most, T(abs(force)));
+  std::vector<int> sign;
+  for (const T& force : x) sign.push_back(abs(force) <= zero_tolerance<T>() * most ? 0 : force > 0 ? 1 : -1);
+  return sign;
+}
+
+/// Signs that the contacts' problem confirms, from all + on: those of its solution until they repeat; then, lest that
+/// cycles, the first contradiction alone (finite for W-problems; Murty).
+template <class T>
+std::vector<int> FrictionLaw<T>::iterate(const Problem& problem) {
+  constexpr int at_once = 50, most_trials = 5000;
+  std::vector<int> sign(static_cast<std::size_t>(problem.n), 1);
+  for (int trial = 0; trial < most_trials; ++trial) {
+    const auto x = forces(problem, sign);
+    if (!x) return {};
+    const std::vector<int> found = signs(*x);
+    bool confirmed = true;
+    for (std::size_t c = 0; c < sign.size(); ++c) {
+      if (found[c] * sign[c] >= 0 || (!confirmed && trial >= at_once)) continue;
+      sign[c] = found[c];
+      confirmed = false;
+    }
+    if (confirmed) return found;
+  }
+  return {};
+}
+
+/// The modes with given slips that are worth trying in the whole system. Few signs: all. Many: those that the contacts'
+/// problem, in the same arithmetic, does not exclude. Too many: those that iteration finds, vanishing forces with both.
 template <class T>
 std::vector<Mode> FrictionLaw<T>::modes(const Mode& slips, const Coefficients<T>& mu) {
-  using std::abs;
-  std::vector<std::size_t> rough;
+  std::vector<std::size_t> open;  // contacts whose sign is open
   for (std::size_t c = 0; c < slips.sign.size(); ++c) {
-    if (mu[static_cast<std::size_t>(dynamics_.mechanism.guide_of[c])] > 0) rough.push_back(c);
+    if (mu[static_cast<std::size_t>(dynamics_.mechanism.guide_of[c])] > 0) open.push_back(c);
   }
-  const std::size_t all = std::size_t{1} << rough.size(), n = slips.sign.size();
-  typename Dynamics<T>::ContactProblem problem;
-  const bool reduced = all >= static_cast<std::size_t>(many_signs) && dynamics_.contact_problem(slips, mu, problem);
-  const auto possible = [&](const Mode& mode) {
-    typename Elimination<T>::Rows w(n, std::vector<T>(n));
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) w[i][j] = (mode.sign[j] > 0 ? problem.plus : problem.minus)[i * n + j];
+  Problem problem;
+  bool reduced = (1LL << open.size()) >= many_signs && dynamics_.contact_problem(slips, mu, problem);
+  Mode base = slips;
+  if ((1LL << open.size()) > most_modes) {
+    const std::vector<int> found = reduced ? iterate(problem) : std::vector<int>();
+    if (found.empty()) return {};
+    open.clear();
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      if (found[c] == 0) open.push_back(c);
+      if (found[c] != 0) base.sign[c] = found[c];
     }
-    Elimination<T> factors;
-    factors.compute(std::move(w));
-    if (factors.lost_rank()) return true;
-    const std::vector<T> x = factors.solve(problem.b);
-    T most(0);
-    for (const T& force : x) most = std::max(most, T(abs(force)));
-    return std::all_of(rough.begin(), rough.end(),
-                       [&](std::size_t c) { return T(mode.sign[c]) * x[c] >= -zero_tolerance<T>() * most; });
-  };
-  std::vector<Mode> found;
-  for (std::size_t number = 0; number < all; ++number) {
-    Mode mode = slips;
-    for (std::size_t k = 0; k < rough.size(); ++k) mode.sign[rough[k]] = (number >> k) % 2 == 0 ? 1 : -1;
-    if (!reduced || possible(mode)) found.push_back(mode);
+    reduced = false;
+    if ((1LL << open.size()) > most_modes) return {};
   }
-  return found;
+  std::vector<Mode> worth;
+  for (long long number = 0; number < 1LL << open.size(); ++number) {
+    Mode mode = base;
+    for (std::size_t k = 0; k < open.size(); ++k) mode.sign[open[k]] = (number >> k) % 2 == 0 ? 1 : -1;
+    const auto x = reduced ? forces(problem, mode.sign) : std::nullopt;
+    const std::vector<int> found = x ? signs(*x) : mode.sign;
+    if (std::all_of(open.begin(), open.end(), [&](std::size_t c) { return found[c] * mode.sign[c] >= 0; })) {
+      worth.push_back(mode);
+    }
+  }
+  return worth;
 }
 
 template <class T>
@@ -326,14 +368,14 @@ std::vector<Solution<T>> FrictionLaw<T>::solutions(const Motion<T>& motion, cons
                                                    const Coefficients<T>& mu) {
   std::vector<Solution<T>> found;
   dynamics_.begin(motion);
-  if (count(at_rest, mu) > most_modes) return found;
   const auto add = [&](const Solution<T>& solution) {
     if (std::none_of(found.begin(), found.end(), [&](const auto& other) { return same(other, solution); })) {
       found.push_back(solution);
     }
   };
   int choices = 1;
-  for (const bool rests : at_rest) choices *= rests ? 3 : 1;
+  for (const bool rests : at_rest) choices *= rests && choices <= most_modes ? 3 : 1;
+  if (choices > most_modes) return found;
   for (int number = 0; number < choices; ++number) {
     Mode slips = first_mode(at_rest);
     int digits = number;
@@ -343,7 +385,7 @@ std::vector<Solution<T>> FrictionLaw<T>::solutions(const Motion<T>& motion, cons
       digits /= 3;
     }
     for (const Mode& mode : modes(slips, mu)) {
-      if (is_allowed(mode, at_rest, mu, nullptr)) add(read(mode, at_rest));
+      if (is_allowed(mode, at_rest, mu)) add(read(mode, at_rest));
     }
   }
   for (const Solution<T>& solution : jammed(at_rest, mu)) add(solution);
@@ -429,32 +471,8 @@ std::vector<Solution<T>> FrictionLaw<T>::jammed(const std::vector<bool>& at_rest
   return found;
 }
 
-/// From a mode to an allowed one, by changing what it assumes wrongly. May fail though there is one.
 template <class T>
-bool FrictionLaw<T>::search(const std::vector<bool>& at_rest, const Coefficients<T>& mu, Mode mode,
-                            std::vector<Solution<T>>& found) {
-  constexpr int most_trials = 256;
-  for (int trial = 0; trial < most_trials; ++trial) {
-    std::vector<Condition> violated;
-    if (is_allowed(mode, at_rest, mu, &violated)) {
-      found.push_back(read(mode, at_rest));
-      return true;
-    }
-    if (violated.empty()) return false;  // singular
-    if (trial >= most_trials / 2)
-      violated.erase(violated.begin() + 1, violated.end());  // least-index: slow, but it does not cycle on W-problems
-    for (const Condition& condition : violated) {
-      const auto i = static_cast<std::size_t>(condition.index);
-      if (condition.kind == Condition::face) mode.sign[i] = -mode.sign[i];
-      if (condition.kind == Condition::slip) mode.slip[i] = 0;
-      if (condition.kind == Condition::hold) mode.slip[i] = -condition.sign;
-    }
-  }
-  return false;
-}
-
-template <class T>
-Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bool>& at_rest, const Mode& guess) {
+Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bool>& at_rest) {
   Decision<T> decision;
   for (int g = 0; g < dynamics_.guides(); ++g) {
     decision.mu.push_back(at_rest[static_cast<std::size_t>(g)] ? dynamics_.guide(g).mu_static : dynamics_.guide(g).mu);
@@ -466,13 +484,8 @@ Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bo
     auto& found = decision.solutions;
     found = solutions(motion, at_rest, decision.mu);
     const bool complete = count(at_rest, decision.mu) <= most_modes;
-    if (!complete) {
-      Mode mode = first_mode(at_rest);
-      if (!guess.sign.empty()) mode.sign = guess.sign;
-      search(at_rest, decision.mu, mode, found);
-    }
     if (found.empty()) {
-      decision.verdict = Verdict::none;
+      decision.verdict = complete ? Verdict::none : Verdict::undecided;
       return decision;
     }
     const auto resting = [](const Solution<T>& s) { return std::count(s.at_rest.begin(), s.at_rest.end(), true); };

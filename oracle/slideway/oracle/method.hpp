@@ -50,7 +50,9 @@ class Method {
 
   Dynamics<T>& dynamics() { return dynamics_; }
 
-  static bool goes_on(Verdict verdict) { return verdict != Verdict::none && verdict != Verdict::several; }
+  static bool goes_on(Verdict verdict) {
+    return verdict != Verdict::none && verdict != Verdict::several && verdict != Verdict::undecided;
+  }
 
  private:
   Dynamics<T>& dynamics_;
@@ -62,7 +64,7 @@ Verdict Method<T>::accelerate(const TreeState<T>& at, std::vector<bool>& held, s
   const Motion<T> motion = dynamics_.place(at.t, at.q, at.v);
   std::vector<bool> at_rest = law_.find_at_rest(motion, T(rest));
   for (std::size_t g = 0; g < held.size(); ++g) at_rest[g] = at_rest[g] || held[g];
-  const Decision<T> decision = law_.decide(motion, at_rest, {});
+  const Decision<T> decision = law_.decide(motion, at_rest);
   if (!goes_on(decision.verdict)) return decision.verdict;
   const Solution<T>& solution = decision.solutions.front();
   held = solution.at_rest;

@@ -35,7 +35,7 @@ struct Instant {
 };
 
 /// Why a trajectory ended.
-enum class End { duration, no_solution, not_unique, singular, too_many_events, start_off_constraints };
+enum class End { duration, no_solution, not_unique, undecided, singular, too_many_events, start_off_constraints };
 
 template <class T>
 struct Trajectory {
@@ -108,6 +108,8 @@ Trajectory<T> Integrator<T>::run(const T& duration, const std::vector<T>& times)
   result_ = {};
   work_ = dissipated_ = T(0);
   if (!begin(T(0))) return result_;
+  constexpr int most_standing = 100;  // decisions at one time: each takes a guide or contact on, and none comes back
+  int standing = 0;
   std::size_t next = 0;
   T energy_start(0), energy_most(0);
   while (true) {
@@ -134,11 +136,12 @@ Trajectory<T> Integrator<T>::run(const T& duration, const std::vector<T>& times)
     if (event) find_rest(tau);
     motion_ = motion_at(tau);
     ++result_.steps;
+    standing = tau > 0 ? 0 : standing + 1;
     result_.t = motion_.t;
     options_.progress(static_cast<double>(motion_.t));
     const bool done = motion_.t >= duration;
     if (event) {
-      if (static_cast<int>(result_.events.size()) > options_.most_events || result_.steps > 1000000) {
+      if (static_cast<int>(result_.events.size()) > options_.most_events || standing > most_standing) {
         result_.end = End::too_many_events;
         break;
       }
@@ -170,12 +173,12 @@ bool Integrator<T>::begin(const T& t) {
 /// The mode at motion_, and the series begun there.
 template <class T>
 bool Integrator<T>::decide() {
-  Decision<T> decision = law_.decide(motion_, at_rest_, mode_);
+  Decision<T> decision = law_.decide(motion_, at_rest_);
   result_.unverified = result_.unverified || decision.verdict == Verdict::unverified;
-  if (decision.verdict == Verdict::none || decision.verdict == Verdict::several) {
-    result_.end = decision.verdict == Verdict::none ? End::no_solution : End::not_unique;
-    return false;
-  }
+  if (decision.verdict == Verdict::none) result_.end = End::no_solution;
+  if (decision.verdict == Verdict::several) result_.end = End::not_unique;
+  if (decision.verdict == Verdict::undecided) result_.end = End::undecided;
+  if (result_.end != End::duration) return false;
   mode_ = decision.solutions.front().mode;
   at_rest_ = decision.solutions.front().at_rest;
   mu_ = decision.mu;
