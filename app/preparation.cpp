@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "messages.hpp"
+#include "run_options.hpp"
 #include "scene_source.hpp"
 
 namespace slideway::app {

@@ -6,9 +6,10 @@
 #include <slideway/step.hpp>
 
 #include "recording.hpp"
-#include "run_options.hpp"
 
 namespace slideway::app {
+
+struct StepOptions;
 
 using RunState = State<io::RunSize>;
 using RunStepper = RunTimeStepper<io::RunSize>;

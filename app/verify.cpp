@@ -4,6 +4,7 @@
 #include "messages.hpp"
 #include "output.hpp"
 #include "preparation.hpp"
+#include "run_options.hpp"
 #include "verbs.hpp"
 #include "verification.hpp"
 #include "verify_report.hpp"

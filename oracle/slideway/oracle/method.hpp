@@ -124,7 +124,8 @@ std::vector<Drift<T>> Method<T>::drift(const TreeState<T>& at) {
   dynamics_.begin(dynamics_.place(at.t, at.q, at.v));
   std::vector<Drift<T>> all;
   for (std::size_t d = 0; d < mechanism.law.size(); ++d) {
-    const auto &row = mechanism.driven(static_cast<int>(d)), &law = mechanism.law[d];
+    const auto& row = mechanism.driven(static_cast<int>(d));
+    const auto& law = mechanism.law[d];
     all.push_back({T(row.value[0] - law[0]), T(row.speed[0] - law[1])});
   }
   for (const auto& row : mechanism.pin) all.push_back({row.value[0], row.speed[0]});
