@@ -12,7 +12,8 @@ double Check::shared(double x) const {
 }
 
 bool Verification::held() const {
-  return run.recording.status == Status::ok && std::all_of(groups.begin(), groups.end(), [](const CheckGroup& group) {
+  return run.recording.status == Status::ok && reference_end.empty() &&
+         std::all_of(groups.begin(), groups.end(), [](const CheckGroup& group) {
            return std::all_of(group.checks.begin(), group.checks.end(), [](const Check& c) { return c.held(); });
          });
 }

@@ -40,7 +40,7 @@ struct Verification {
   double reference_digits = 0;           ///< shared by two trajectories of the oracle
   long reference_steps = 0;
   std::vector<Event> reference_events;
-  std::string reference_end;  ///< "" if the trajectory reaches the end of the run; else why not
+  std::string reference_end;  ///< why the trajectory is no reference for the whole run; "" if it is
 
   bool held() const;
 };

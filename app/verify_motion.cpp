@@ -170,8 +170,11 @@ CheckGroup check_motion(const Preparation& prepared, Verification& verification,
     for (int g = 0; g < event.guide && contact != none; ++g) contact -= run.recording.file.scene.guide[g].contacts;
     verification.reference_events.push_back({static_cast<double>(event.t), event.guide, contact, event.kind});
   }
+  constexpr double digits_needed = 18;  // two more than a double's
   if (exact.end != oracle::End::duration) {
-    verification.reference_end = fmt::format("t = {:.9g} s: {}", static_cast<double>(exact.t), why(exact.end));
+    verification.reference_end = fmt::format("ends at t = {:.9g} s: {}", static_cast<double>(exact.t), why(exact.end));
+  } else if (digits < digits_needed) {
+    verification.reference_end = fmt::format("is no reference: its two runs share {:.0f} digits", digits);
   }
   if (exact.unverified) {
     verification.not_checked.push_back(

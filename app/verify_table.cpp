@@ -40,7 +40,8 @@ std::string verify_table(const Verification& verification) {
   text +=
       fmt::format("oracle: {} steps, {} events, {:.0f} digits shared by two runs of different order and step\n",
                   verification.reference_steps, verification.reference_events.size(), verification.reference_digits);
-  if (!verification.reference_end.empty()) text += fmt::format("oracle ends at {}\n", verification.reference_end);
+  if (!verification.reference_end.empty())
+    text += fmt::format("the oracle's trajectory {}\n", verification.reference_end);
   for (const CheckGroup& group : verification.groups) {
     if (group.checks.empty()) continue;
     text += fmt::format("\n{}: {}\n  {:<24}{:>7}{:>9}{:>12}{:>12}\n", group.title, group.explanation, "", "digits",

@@ -1,3 +1,5 @@
+#include <mpfr.h>
+
 #include <future>
 #include <slideway/oracle/trajectory.hpp>
 
@@ -49,7 +51,11 @@ Validated integrate_twice(const Model<Real>& model, const Real& duration, const 
   better.step *= 0.8;
   TrajectoryOptions quiet = options;
   quiet.progress = [](double) {};
-  auto other = std::async(std::launch::async, [&] { return Integrator<Real>(model, quiet).run(duration, times); });
+  auto other = std::async(std::launch::async, [&] {
+    Trajectory<Real> result = Integrator<Real>(model, quiet).run(duration, times);
+    mpfr_free_cache();  // of this thread
+    return result;
+  });
   Trajectory<Real> trajectory = Integrator<Real>(model, better).run(duration, times);
   const double digits = shared_digits(trajectory, other.get());
   return {std::move(trajectory), digits};
