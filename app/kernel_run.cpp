@@ -8,8 +8,7 @@ namespace slideway::app {
 namespace {
 
 /// Beside what the recorder saw: the state, accelerations and uniqueness.
-bool keep(const Preparation& prepared, const Recorder& recorder, const RunState& state, long long step,
-          KernelRun& run) {
+bool keep(const Preparation& prepared, const Recorder& recorder, const RunState& state, KernelRun& run) {
   Reaction<io::RunSize> r;
   const Report report = prepared.stepper->reaction(state, prepared.inputs, r);
   if (report.status != Status::ok) return false;
@@ -17,7 +16,6 @@ bool keep(const Preparation& prepared, const Recorder& recorder, const RunState&
   run.samples.push_back(recorder.sample());
   run.accelerations.emplace_back(r.acceleration, r.acceleration + coordinates(run.recording.file.scene));
   run.uniqueness.push_back(report.uniqueness);
-  run.step_of.push_back(static_cast<std::size_t>(step));
   return true;
 }
 
@@ -32,7 +30,7 @@ KernelRun run_kernel(const Preparation& prepared, int divisor, Progress& progres
   Output no_csv("");
   Recorder recorder(*prepared.stepper, prepared.inputs, all, all + 1, no_csv, run.recording);
   RunState state = prepared.start;
-  bool going = recorder.start(state) && keep(prepared, recorder, state, 0, run);
+  bool going = recorder.start(state) && keep(prepared, recorder, state, run);
   for (long long step = 0; step < plan.steps && going; ++step) {
     for (int part = 0; part < divisor && going; ++part) {
       const Report report = prepared.stepper->step(state, plan.of(step) / divisor, prepared.inputs);
@@ -43,8 +41,7 @@ KernelRun run_kernel(const Preparation& prepared, int divisor, Progress& progres
       going = recorder.step(state, report);
     }
     progress.show(static_cast<double>(step) / static_cast<double>(plan.steps), "of the kernel's steps");
-    if (going && ((step + 1) % stride == 0 || step + 1 == plan.steps))
-      going = keep(prepared, recorder, state, step + 1, run);
+    if (going && ((step + 1) % stride == 0 || step + 1 == plan.steps)) going = keep(prepared, recorder, state, run);
   }
   recorder.finish();
   return run;

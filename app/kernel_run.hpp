@@ -14,8 +14,7 @@ struct KernelRun {
   std::vector<Sample> samples;   ///< of the same instants
   std::vector<std::vector<double>> accelerations;
   std::vector<Uniqueness> uniqueness;
-  std::vector<std::size_t> step_of;  ///< the step of the plan that each sample comes after
-  Recording recording;               ///< of the whole run
+  Recording recording;  ///< of the whole run
 };
 
 /// At most this many samples, equally many steps apart.

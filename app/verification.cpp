@@ -21,7 +21,9 @@ bool Verification::held() const {
 void ask_for_digits(Verification& verification, double digits) {
   for (CheckGroup& group : verification.groups) {
     for (Check& check : group.checks) {
-      if (!check.counts()) check.bound = check.scale * std::pow(10.0, -digits);
+      if (check.counts()) continue;
+      check.bound = check.scale * std::pow(10.0, -digits);
+      for (const double error : check.curve) check.error = error > check.error ? error : check.error;
     }
   }
 }

@@ -14,10 +14,11 @@ struct Check {
   double error = 0;  ///< of `unit`; a count, if there is no scale
   double scale = 0;  ///< largest magnitude of the kind; 0: the error counts violations
   double bound = 0;
+  bool bound_grows = false;     ///< with the run's own error: beyond the scale it says nothing, and does not hold
   double t = 0;                 ///< where the error is worst, s
   std::vector<double> curve{};  ///< the error at each sample, for the chart; empty if there is none
 
-  bool held() const { return error <= bound; }
+  bool held() const { return error <= bound && !(bound_grows && bound >= scale); }
   bool counts() const { return scale == 0; }
   /// Decimal digits that both share: -log10 of the relative error, at most those of a double.
   double digits() const { return shared(error); }
@@ -36,6 +37,7 @@ struct CheckGroup {
 struct Verification {
   KernelRun run;
   std::vector<CheckGroup> groups;
+  double acceleration_bound = 0;         ///< of what rounding makes of accelerations, largest at any state
   std::vector<std::string> not_checked;  ///< each a sentence
   double reference_digits = 0;           ///< shared by two trajectories of the oracle
   long reference_steps = 0;

@@ -40,12 +40,12 @@ bool is_true(Uniqueness claim, const oracle::InstantCheck& found) {
 
 /// Keeps the worst: the largest error in units of its bound.
 void take(Check& check, const oracle::Shortfall& s, double t) {
+  check.scale = std::max(check.scale, s.scale);
   check.curve.push_back(s.error);
-  const bool first = check.bound == 0, settled = check.error != check.error;
+  const bool first = check.curve.size() == 1, settled = check.error != check.error;
   if (!first && (settled || s.error * check.bound <= check.error * s.bound)) return;
   check.error = s.error;
   check.bound = s.bound;
-  check.scale = std::max(s.scale, 1e-300);
   check.t = t;
 }
 
@@ -64,17 +64,25 @@ CheckGroup check_states(const Preparation& prepared, Verification& verification,
   Check acceleration{"accelerations", "m/s^2, rad/s^2"}, lambda{"contact forces", "N"}, friction{"friction", "N"},
       drive{"drive forces", "N, N m"}, pin{"pin forces", "N"}, energy{"energy", "J"},
       coulomb{"Coulomb's law", "of mu Lambda"}, faces{"complementarity", "forces on the wrong face"},
-      slip{"dissipation", "guides driven by friction"}, uniqueness{"uniqueness", "false claims"};
+      slip{"dissipation", "guides driven by friction"}, uniqueness{"uniqueness", "false claims"},
+      unsolved{"states", "that the oracle cannot solve"};
   // Two sums of up to two products each, in the kernel and once more in what is tested here.
   coulomb.scale = 1;
   coulomb.bound = 8 * 0x1p-52;
   bool undecided = false, untried = false;
+  int branching = 0;
   const std::size_t count_of_samples = run.samples.size();
   const std::size_t stride = (count_of_samples + most_states - 1) / most_states;
   std::size_t states = 0;
   for (std::size_t i = 0; i < count_of_samples; i += stride, ++states) {
     const oracle::ClaimedInstant claim = claim_of(run, i);
     const oracle::InstantCheck found = checker.check(claim);
+    untried = untried || found.verdict == oracle::Verdict::unverified || found.verdict == oracle::Verdict::undecided;
+    count(uniqueness, !is_true(run.uniqueness[i], found), claim.t);
+    count(unsolved, !found.answered && found.verdict != oracle::Verdict::undecided, claim.t);
+    if (!found.answered) continue;
+    branching += found.solutions > 1 ? 1 : 0;
+    verification.acceleration_bound = std::max(verification.acceleration_bound, found.acceleration.bound);
     take(acceleration, found.acceleration, claim.t);
     take(lambda, found.lambda, claim.t);
     take(friction, found.friction, claim.t);
@@ -85,9 +93,7 @@ CheckGroup check_states(const Preparation& prepared, Verification& verification,
     coulomb.error = oracle::worse(coulomb.error, found.coulomb);
     count(faces, found.wrong_faces > 0, claim.t);
     count(slip, !found.against_slip, claim.t);
-    count(uniqueness, !is_true(run.uniqueness[i], found), claim.t);
     undecided = undecided || (!found.decided && run.uniqueness[i] == Uniqueness::certified);
-    untried = untried || found.verdict == oracle::Verdict::unverified || found.verdict == oracle::Verdict::undecided;
     progress.show(static_cast<double>(i) / static_cast<double>(count_of_samples), "of the states");
   }
   if (untried) {
@@ -99,12 +105,17 @@ CheckGroup check_states(const Preparation& prepared, Verification& verification,
     verification.not_checked.push_back(
         "The W-property that the kernel certifies: the oracle decides it for at most 12 contacts of sliding guides.");
   }
+  if (branching > 0) {
+    verification.not_checked.push_back(
+        fmt::format("Which of several sets of forces acts, at {} of the states: the nearest was compared.", branching));
+  }
   CheckGroup group{"At states of the run",
                    fmt::format("the equations at {} of its states, solved by the oracle for the same q and v", states),
                    {}};
   for (Check* check : {&acceleration, &lambda, &friction, &drive, &pin, &energy}) {
-    if (check->bound > 0) group.checks.push_back(*check);
+    if (check->bound > 0 || !(check->error <= 0)) group.checks.push_back(*check);
   }
+  group.checks.push_back(unsolved);
   if (scene.guides > 0) group.checks.insert(group.checks.end(), {coulomb, faces, slip, uniqueness});
   return group;
 }

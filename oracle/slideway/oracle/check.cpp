@@ -90,6 +90,7 @@ InstantCheck Checker::check(const ClaimedInstant& claim) {
   dynamics_.begin(motion);
   if (!dynamics_.solve(taken->mode, decision.mu)) return result;
   const Answer exact = answer();
+  result.answered = true;
   std::vector<Answer> moved;
   for (int perturbation = 1; perturbation <= 2; ++perturbation) {
     dynamics_.begin(place(claim, perturbation));

@@ -25,6 +25,7 @@ struct Shortfall {
 
 struct InstantCheck {
   Verdict verdict = Verdict::none;
+  bool answered = false;   ///< the oracle has an answer, which the claim was held against
   int solutions = 0;       ///< allowed modes that differ; 0 if there were too many modes to try, too
   bool certified = false;  ///< W-property, exactly, of the contacts' problem; false if that was not decided
   bool decided = false;    ///< whether it was: at most exact_max_order contacts, all guides slipping

@@ -493,8 +493,8 @@ Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bo
     several = several || std::any_of(found.begin(), found.end(), [&](const Solution<T>& s) {
                 return !detail::close(s.acceleration, found.front().acceleration, push());
               });
-    decision.verdict = !complete          ? Verdict::unverified
-                       : several          ? Verdict::several
+    decision.verdict = several            ? Verdict::several
+                       : !complete        ? Verdict::unverified
                        : found.size() > 1 ? Verdict::motion_only
                                           : Verdict::unique;
     for (std::size_t g = 0; g < at_rest.size(); ++g) {

@@ -9,9 +9,11 @@ template class Integrator<Real>;
 
 namespace {
 
+constexpr std::size_t energies = 6;  ///< from this kind on
+
 /// Every number of an instant, by kinds.
 std::vector<std::vector<Real>> kinds(const Instant<Real>& i) {
-  return {i.q, i.v, i.lambda, i.friction, i.drive, i.pin, {i.energy}, {i.work}, {i.dissipated}};
+  return {i.q, i.v, i.lambda, i.friction, i.drive, i.pin, {i.energy, i.work, i.dissipated}};
 }
 
 /// Largest error of a kind over its largest magnitude.
@@ -20,9 +22,10 @@ Real relative_error(const Trajectory<Real>& a, const Trajectory<Real>& b, std::s
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     const auto x = kinds(a.samples[i])[kind], y = kinds(b.samples[i])[kind];
     for (std::size_t j = 0; j < x.size(); ++j) {
-      error = std::max(error, Real(abs(x[j] - y[j])));
+      error = worse(error, Real(abs(x[j] - y[j])));
       scale = std::max(scale, Real(abs(x[j])));
     }
+    if (kind == energies) scale = std::max({scale, a.samples[i].kinetic, b.samples[i].kinetic});
   }
   return scale > 0 ? Real(error / scale) : Real(0);
 }
@@ -33,15 +36,15 @@ double shared_digits(const Trajectory<Real>& a, const Trajectory<Real>& b) {
   if (a.samples.size() != b.samples.size() || a.events.size() != b.events.size() || a.end != b.end) return 0;
   Real worst(0);
   for (std::size_t kind = 0; !a.samples.empty() && kind < kinds(a.samples.front()).size(); ++kind) {
-    worst = std::max(worst, relative_error(a, b, kind));
+    worst = worse(worst, relative_error(a, b, kind));
   }
   for (std::size_t i = 0; i < a.events.size(); ++i) {
     const auto &x = a.events[i], &y = b.events[i];
     if (x.guide != y.guide || x.contact != y.contact || x.kind != y.kind) return 0;
-    worst = std::max(worst, Real(abs(x.t - y.t) / a.t));
+    worst = worse(worst, Real(abs(x.t - y.t) / a.t));
   }
   constexpr double most = std::numeric_limits<Real>::digits10;
-  return worst > 0 ? std::min(most, -static_cast<double>(log10(worst))) : most;
+  return worst == 0 ? most : worst < 1 ? std::min(most, -static_cast<double>(log10(worst))) : 0;
 }
 
 Validated integrate_twice(const Model<Real>& model, const Real& duration, const std::vector<Real>& times,

@@ -31,6 +31,7 @@ struct Instant {
   std::vector<T> q, v, acceleration;                  ///< of the joints' coordinates
   std::vector<T> lambda, friction, slip, drive, pin;  ///< pin: two each, world's frame
   T energy, work, dissipated;                         ///< J; the flows since the start
+  T kinetic;                                          ///< J
   Mode mode;                                          ///< slip 0: at rest
 };
 
@@ -72,7 +73,7 @@ class Integrator {
     return std::max(FrictionLaw<T>::orders, static_cast<int>(std::ceil(std::max(digits, 34) * std::log(10.0) / 2)));
   }
 
-  bool begin(const T& t);
+  bool begin();
   bool decide();
   void expand();
   T step_size() const;
@@ -107,7 +108,7 @@ Trajectory<T> Integrator<T>::run(const T& duration, const std::vector<T>& times)
   using std::abs;
   result_ = {};
   work_ = dissipated_ = T(0);
-  if (!begin(T(0))) return result_;
+  if (!begin()) return result_;
   constexpr int most_standing = 100;  // decisions at one time: each takes a guide or contact on, and none comes back
   int standing = 0;
   std::size_t next = 0;
@@ -158,9 +159,9 @@ Trajectory<T> Integrator<T>::run(const T& duration, const std::vector<T>& times)
 }
 
 template <class T>
-bool Integrator<T>::begin(const T& t) {
+bool Integrator<T>::begin() {
   const Model<T>& model = dynamics_.mechanism.model;
-  motion_ = dynamics_.place(t, model.start.q, model.start.v);
+  motion_ = dynamics_.place(T(0), model.start.q, model.start.v);
   at_rest_ = law_.find_at_rest(motion_, T(options_.rest));
   if (!dynamics_.project(motion_, at_rest_)) {
     result_.end = End::start_off_constraints;
@@ -209,12 +210,16 @@ T Integrator<T>::step_size() const {
     const auto k = static_cast<std::size_t>(order);
     return T(abs(work_power_[k]) + abs(dissipated_power_[k]) + abs(dynamics_.mechanism.potential[order]));
   };
+  // Of the last ten: series of even or odd functions, or of t^4, have zeros among them.
+  constexpr int last_orders = 10;
   T radius = std::numeric_limits<T>::max();
   const auto lower = [&](const auto& size) {
-    const T unit = std::max({size(0), size(1), size(2)});
-    for (int order = order_ - 2; order < order_; ++order) {
+    int first = 0;
+    while (first < order_ - last_orders && size(first) == 0) ++first;
+    const T unit = std::max({size(first), size(first + 1), size(first + 2)});
+    for (int order = order_ - last_orders; order < order_; ++order) {
       const T last = size(order);
-      if (last > 0 && unit > 0) radius = std::min(radius, T(pow(T(unit / last), T(1) / order)));
+      if (last > 0 && unit > 0) radius = std::min(radius, T(pow(T(unit / last), T(1) / (order - first + 1))));
     }
   };
   lower(forces);
@@ -340,12 +345,13 @@ Instant<T> Integrator<T>::instant(const T& tau) const {
     const T c = cos(angle), s = sin(angle);
     now.pin.insert(now.pin.end(), {T(c * x - s * y), T(s * x + c * y)});
   }
-  now.energy = at(mechanism.potential, tau, order_ + 1);
+  now.kinetic = T(0);
   const Motion<T> motion = motion_at(tau);
   for (int i = 0; i < 3 * mechanism.bodies(); ++i) {
     const T& v = motion.velocity[static_cast<std::size_t>(i)];
-    now.energy += mechanism.mass(i) * v * v / 2;
+    now.kinetic += mechanism.mass(i) * v * v / 2;
   }
+  now.energy = now.kinetic + at(mechanism.potential, tau, order_ + 1);
   now.work = work_ + integral(work_power_, tau);
   now.dissipated = dissipated_ + integral(dissipated_power_, tau);
   now.mode = shown_mode();
