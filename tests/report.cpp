@@ -42,11 +42,11 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// The report of `slideway run` with these arguments.
+/// The report of `slideway` with these arguments.
 std::string report_of(const Directory& directory, const std::string& arguments) {
   const fs::path file = directory.path / "report.html";
   // From there, since a file with a shipped scene's name comes first, and test programs have such names.
-  output_of("cd '" + directory.path.string() + "' && '" SLIDEWAY_COMMAND "' run " + arguments + " --quiet --report '" +
+  output_of("cd '" + directory.path.string() + "' && '" SLIDEWAY_COMMAND "' " + arguments + " --quiet --report '" +
             file.string() + "' 2>&1");
   return text_of(file);
 }
@@ -96,25 +96,51 @@ TEST_P(Report, FetchesNothing) {
 
 // Smooth, several guides, pins and a spring alone, many contacts.
 INSTANTIATE_TEST_SUITE_P(Runs, Report,
-                         testing::Values("crank_rocker", "quick_return", "squeezer", "v_engine_16 --duration 5e-3"),
+                         testing::Values("run crank_rocker", "run quick_return", "run squeezer",
+                                         "run v_engine_16 --duration 5e-3"),
                          [](const auto& run) {
                            const std::string arguments = run.param;
-                           return arguments.substr(0, arguments.find(' '));
+                           const auto scene = arguments.find(' ') + 1;
+                           return arguments.substr(scene, arguments.find(' ', scene) - scene);
                          });
 
 TEST(ReportOfARefusal, SaysWhy) {
   if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
   const Directory directory;
-  const std::string page = report_of(directory, "overhung_slider --set guide.way.mu=0.9");  // refused at once
+  const std::string page = report_of(directory, "run overhung_slider --set guide.way.mu=0.9");  // refused at once
   const std::string document = document_of(directory, page, 800);
   EXPECT_EQ(attribute(document, "data-ready"), "ok");
   EXPECT_NE(document.find("contact forces satisfy the equations"), std::string::npos);
 }
 
+TEST(ReportOfAVerification, IsDrawnWithoutAnErrorAndFetchesNothing) {
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const Directory directory;
+  const std::string page = report_of(directory, "verify gantry --duration 0.5");
+  EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"?https?:")));
+  for (const int width : {400, 1600}) {
+    const std::string document = document_of(directory, page, width);
+    EXPECT_EQ(attribute(document, "data-ready"), "ok") << width << " px";
+    EXPECT_NE(document.find("<canvas"), std::string::npos) << "charts are drawn, " << width << " px";
+    EXPECT_NE(document.find("Over the run"), std::string::npos) << width << " px";
+    EXPECT_NE(document.find(">Verified<"), std::string::npos) << width << " px";
+  }
+}
+
+TEST(ReportOfAVerification, ShowsWhatFails) {
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const Directory directory;
+  const std::string page = report_of(directory, "verify gantry --duration 0.1 --digits 16");
+  const std::string document = document_of(directory, page, 800);
+  EXPECT_EQ(attribute(document, "data-ready"), "ok");
+  EXPECT_EQ(document.find(">Verified<"), std::string::npos);
+  EXPECT_NE(document.find("class=\"fails"), std::string::npos);
+}
+
 TEST(ReportCheck, SeesAScriptThatFails) {
   if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
   const Directory directory;
-  std::string page = report_of(directory, "crank_rocker --duration 0.1");
+  std::string page = report_of(directory, "run crank_rocker --duration 0.1");
   const std::size_t end = page.rfind("</body>");
   ASSERT_NE(end, std::string::npos);
   page.insert(end, "<script>nothing.of.the.kind();</script>");

@@ -82,11 +82,12 @@ class FrictionLaw {
                                     bool all_slips) const;
   /// Coefficient of a condition's quantity in the solution that the dynamics have.
   T value(const Condition& condition, int order) const;
+  /// What it is zero beside.
+  T scale(const Condition& condition, int order) const;
 
  private:
   bool guide_is_rough(int g) const { return dynamics_.guide(g).rough(); }
   int sign_after(const Condition& condition, bool from_rest);
-  T scale(const Condition& condition, int order) const;
   T largest_load() const;
   T push() const;
   bool same(const Solution<T>& a, const Solution<T>& b) const;

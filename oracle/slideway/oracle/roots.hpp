@@ -97,15 +97,16 @@ std::optional<T> first_root(const std::vector<T>& power, const std::vector<T>& b
 /// The least root in (0, 1] of a_0 + a_1 x + ...; 0 if that is negative just after 0. Leading coefficients that are
 /// rounding (zero_tolerance of the sum of all magnitudes) count as zero: the root at 0 itself is where the caller comes
 /// from. Descartes' rule in Bernstein's basis; a double root counts when the polynomial dips below -(that rounding).
-/// Nothing if there is none, or the polynomial is zero.
+/// `zero`: what counts as rounding of a_0, if the caller knows better. Nothing if there is none, or the polynomial is
+/// zero.
 template <class T>
-std::optional<T> first_root(std::vector<T> a) {
+std::optional<T> first_root(std::vector<T> a, const T& zero = T(0)) {
   using std::abs;
   T size(0);
   for (const T& x : a) size += abs(x);
   const T noise = zero_tolerance<T>() * size;
   std::size_t first = 0;
-  while (first < a.size() && abs(a[first]) <= noise) ++first;
+  while (first < a.size() && abs(a[first]) <= (first == 0 ? std::max(noise, zero) : noise)) ++first;
   a.erase(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(first));  // divided by x^first
   if (a.empty()) return std::nullopt;
   if (a.front() < 0) return T(0);

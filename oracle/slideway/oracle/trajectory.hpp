@@ -235,7 +235,7 @@ std::optional<T> Integrator<T>::first_event(const T& h) const {
     std::vector<T> scaled;
     T power(1);
     for (int k = 0; k < order_; ++k, power *= h) scaled.push_back(law_.value(condition, k) * power);
-    const auto root = first_root(scaled);
+    const auto root = first_root(scaled, T(zero_tolerance<T>() * law_.scale(condition, 0)));  // as decide() sees it
     if (root && (!first || *root * h < *first)) first = *root * h;
   }
   return first;
