@@ -219,7 +219,7 @@ T Integrator<T>::step_size() const {
     const T unit = std::max({size(first), size(first + 1), size(first + 2)});
     for (int order = order_ - last_orders; order < order_; ++order) {
       const T last = size(order);
-      if (last > 0 && unit > 0) radius = std::min(radius, T(pow(T(unit / last), T(1) / (order - first + 1))));
+      if (last > 0 && unit > 0) radius = std::min(radius, T(pow(T(unit / last), T(1) / (order - first))));
     }
   };
   lower(forces);
