@@ -280,7 +280,7 @@ TEST(Dynamics, SolutionSatisfiesTheEquationsOfMotion) {
 
 // ---- The paper's crank-rocker, from the doubles of its scene
 
-/// THEORY.md's closed form for any lengths and masses.
+/// The crank-rocker's closed form for any lengths and masses.
 struct CrankRocker {
   Real th1, rate, acceleration, r, r_rate, lambda, torque;
 

@@ -70,7 +70,7 @@ void expect_forces(const std::string& what, const std::vector<Solution<Real>>& f
 
 // ---- Several answers, and none
 
-TEST(SeveralAnswers, RodOnTwoGuides) {  // THEORY.md's numbers
+TEST(SeveralAnswers, RodOnTwoGuides) {  // by the numbers derived for this pose
   const Real th = 105 * pi / 180;
   RealModel m = rod(pi / 6, th, creeping, ratio(3, 10));
   m.load = {{0, nowhere, {-10 * cos(th), -10 * sin(th)}, 0}};  // 10 N along the rod from B to A
@@ -160,7 +160,7 @@ TEST(SeveralAnswers, PainleveKlein) {  // 2 u - 3 |u| = r, u = -lambda of the sl
 TEST(SeveralAnswers, RestAndSlipBothOfARodOnGuidesAtRightAngles) {
   const Real half = ratio(1, 2);
   RealModel m = rod(pi / 2, 0, 0, half);
-  // THEORY.md's pose, cos th = 24/25, sin th = 7/25: A = (2 cos th, 0), B = (0, 2 sin th)
+  // The pose cos th = 24/25, sin th = 7/25: A = (2 cos th, 0), B = (0, 2 sin th)
   m.start.q = {ratio(24, 25), ratio(7, 25), pi - asin(ratio(7, 25))};
   m.load = {{0, nowhere, {6, 6}, 9}};
   AtStart at(m);
