@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using Row = std::vector<double>;
 
-constexpr std::size_t most_bytes = std::size_t{1} << 20;  // order 32 needs a twentieth of it
+constexpr std::size_t most_bytes = std::size_t{1} << 20;  // order 64 needs a fifth of it
 
 constexpr const char* forms =
     R"(write {"A_plus": [[..]], "A_minus": [[..]], "b": [..]} or, for w - M z = q, {"M": [[..]], "q": [..]})";

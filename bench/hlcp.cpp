@@ -88,6 +88,7 @@ struct WrittenLu {
       x[i] = b[i];
     }
     using slideway::hlcp_detail::each;
+    using slideway::hlcp_detail::row_bits;
     constexpr std::integral_constant<int, N> order;
     double inverse[N];
     bool regular = true;
@@ -95,12 +96,12 @@ struct WrittenLu {
         order, [&](int k) __attribute__((always_inline)) {
           std::uint64_t best = 0;
           for (int i = k; i < N; ++i) {
-            const std::uint64_t key = (slideway::hlcp_detail::bits(std::fabs(lu[i][k])) & ~std::uint64_t{31}) |
-                                      static_cast<std::uint64_t>(31 - i);
+            const std::uint64_t key = (slideway::hlcp_detail::bits(std::fabs(lu[i][k])) & ~row_bits) |
+                                      (row_bits - static_cast<std::uint64_t>(i));
             best = key > best ? key : best;
           }
-          regular = regular && best >= 32;
-          const int p = 31 - static_cast<int>(best & 31);
+          regular = regular && best > row_bits;
+          const int p = static_cast<int>(row_bits - (best & row_bits));
           if (p != k) {
             for (int j = 0; j < N; j += 2) {
               const Pair upper = load(&lu[k][j]);

@@ -77,15 +77,15 @@ Hlcp<N> lcp(const Matrix<N>& m, const Vector<N>& q) {
 }
 
 template <int N>
-HlcpSolution<N> start(unsigned code) {
+HlcpSolution<N> start(std::uint64_t code) {
   HlcpSolution<N> solution = {};
-  for (int k = 0; k < N; ++k) solution.sign[k] = static_cast<signed char>(((code >> k) & 1U) != 0 ? -1 : 1);
+  for (int k = 0; k < N; ++k) solution.sign[k] = static_cast<signed char>(((code >> k) & 1) != 0 ? -1 : 1);
   return solution;
 }
 
 /// Bit k of `code` set: component k is first tried negative.
 template <int N>
-HlcpSolution<N> answer(const Hlcp<N>& problem, unsigned code = 0, HlcpOptions options = {}) {
+HlcpSolution<N> answer(const Hlcp<N>& problem, std::uint64_t code = 0, HlcpOptions options = {}) {
   HlcpSolution<N> solution = start<N>(code);
   slideway::solve(problem, std::integral_constant<int, N>{}, solution, options);
   return solution;
@@ -165,21 +165,45 @@ TEST(Hlcp, SolvesTheCycleOfSignIteration) {
   expect_solved_from_everywhere<3>(problem, {1 / (1 + c), 1 / (1 + c), 1 / (1 + c)}, Uniqueness::certified, 1e-15);
 }
 
-TEST(Hlcp, LeavesACycleAboveOrderFourByFlipsNotByEnumeration) {
-  Matrix<9> s = {};
-  Matrix<9> star = {};
-  Vector<9> b;
-  for (int block = 0; block < 9; block += 3)
+/// The same in blocks of three; before the first of them, x = 2.
+template <int N>
+Hlcp<N> cycles(int first) {
+  Matrix<N> s = {};
+  Matrix<N> star = {};
+  Vector<N> b;
+  for (int k = 0; k < first; ++k) s[k][k] = 1.0;
+  for (int block = first; block < N; block += 3)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         s[block + i][block + j] = circulant(2.0, 0.0, 1.1)[i][j];
         star[block + i][block + j] = circulant(0.0, 0.0, 1.1)[i][j];
       }
   b.fill(2.0);
-  const Hlcp<9> problem = absolute<9>(s, star, b);
+  return absolute<N>(s, star, b);
+}
+
+TEST(Hlcp, LeavesACycleAboveOrderFourByFlipsNotByEnumeration) {
+  const Hlcp<9> problem = cycles<9>(0);
   const HlcpSolution<9> solution = answer(problem, 0x49);
   expect_residual(problem, solution);
   EXPECT_LE(solution.solves, 40);
+}
+
+TEST(Hlcp, LeavesTwentyOneCyclesByFlips) {
+  // Every other unknown reversed, so that enumeration would begin 2^63 patterns before the solution. 101 is the start
+  // that needs most flips; index 31, which may flip 2^32 times, is the first of its block and needs more than one.
+  Hlcp<64> problem = cycles<64>(1);
+  for (int i = 0; i < 64; ++i)
+    for (int j = 1; j < 64; j += 2) {
+      std::swap(problem.plus[i][j], problem.minus[i][j]);
+      problem.plus[i][j] *= -1.0;
+      problem.minus[i][j] *= -1.0;
+    }
+  const std::uint64_t right = 0xaaaaaaaaaaaaaaaa;
+  const HlcpSolution<64> solution = answer(problem, right ^ 0xb6db6db6db6db6da);
+  expect_residual(problem, solution);
+  EXPECT_LE(solution.solves, 1 + 4 + 21 * 6);
+  for (int k = 1; k < 64; ++k) EXPECT_NEAR(solution.x[k], (k % 2 != 0 ? -1.0 : 1.0) / 2.1, 1e-15);
 }
 
 TEST(Hlcp, SolvesKostrevasMatrix) {
@@ -202,6 +226,36 @@ TEST(Hlcp, SolvesMurtysMatrixInBothOrdersAndTransposed) {
   const HlcpSolution<n> solution = answer(lcp<n>(murty<n>(), ones));
   EXPECT_EQ(solution.x[0], -1.0);
   for (int k = 1; k < n; ++k) EXPECT_EQ(solution.x[k], 1.0);
+}
+
+TEST(Hlcp, SolvesMurtysMatrixOfOrderSixtyFourByIteration) {
+  constexpr int n = 64;
+  Vector<n> ones;
+  ones.fill(-1.0);
+  const Matrix<n> lower = murty<n>();
+  for (const Matrix<n>& m : {lower, transpose<n>(lower), reversed<n>(lower), reversed<n>(transpose<n>(lower))})
+    for (const std::uint64_t code : {0x0ULL, 0x1ULL, ~0x0ULL, 0x5555555555555555ULL, 0x123456789abcdef0ULL}) {
+      const HlcpSolution<n> solution = answer(lcp<n>(m, ones), code);
+      expect_residual(lcp<n>(m, ones), solution);
+      EXPECT_LE(solution.solves, 1 + n + 4);
+      const bool first = m[1][0] == lower[1][0];  // z_0 = 1, else z_63 = 1
+      for (int k = 0; k < n; ++k) EXPECT_EQ(solution.x[k], k == (first ? 0 : n - 1) ? -1.0 : 1.0);
+    }
+}
+
+TEST(Hlcp, IteratesWhereOnlyTheLastSignsChange) {
+  // Murty's matrix behind 32 unknowns that are 1 from the first step on; by flips it would take 2^32.
+  Matrix<64> m = {};
+  Vector<64> q;
+  for (int k = 0; k < 32; ++k) {
+    m[k][k] = q[k] = 1.0;
+    q[32 + k] = -1.0;
+    for (int j = 0; j < 32; ++j) m[32 + k][32 + j] = transpose<32>(murty<32>())[k][j];
+  }
+  const HlcpSolution<64> solution = answer(lcp<64>(m, q));
+  EXPECT_EQ(solution.status, Status::ok) << name(solution.status);
+  EXPECT_LE(solution.solves, 1 + 32 + 4);
+  for (int k = 0; k < 64; ++k) EXPECT_EQ(solution.x[k], k == 63 ? -1.0 : 1.0);
 }
 
 TEST(Hlcp, SolvesFathisMatrix) {
@@ -393,6 +447,43 @@ TEST(Hlcp, EnumeratesWhatIterationCannotSolveAboveOrderFour) {
   EXPECT_EQ(answer(problem).status, Status::no_solution);
   problem.b[3] = 0.0;
   EXPECT_EQ(answer(problem).status, Status::singular_constraints);
+}
+
+template <int N>
+void expect_enumeration_cut_short() {
+  // As above; the equation without solution is the last, which may flip once, so that enumeration is reached.
+  Hlcp<N> problem = {};
+  for (int k = 0; k < N; ++k) {
+    problem.plus[k][k] = -1.0;
+    problem.minus[k][k] = 5.0;
+    problem.b[k] = k == N - 1 ? 1.0 : -1.0;
+  }
+  HlcpOptions options;
+  for (const int limit : {2, 50, 300}) {
+    options.max_solves = limit;
+    HlcpSolution<N> bounded = start<N>(0);
+    slideway::solve(problem, static_cast<int>(N), bounded, options);
+    for (const HlcpSolution<N>& solution : {answer(problem, 0, options), bounded}) {
+      EXPECT_EQ(solution.status, Status::solve_limit) << name(solution.status);
+      EXPECT_EQ(solution.solves, limit);
+    }
+  }
+  // x_k = 1, and nothing more than that is known: the start is singular, and 300 patterns of 2^N are few.
+  for (int k = 0; k < N; ++k) {
+    problem.plus[k][k] = problem.b[k] = 1.0;
+    problem.minus[k][k] = k == N - 1 ? 0.0 : 2.0;
+  }
+  const HlcpSolution<N> found = answer(problem, std::uint64_t{1} << (N - 1), options);
+  EXPECT_EQ(found.uniqueness, Uniqueness::unproven) << name(found.uniqueness);
+  expect_residual(problem, found);
+}
+
+TEST(Hlcp, ClaimsNothingFromAnEnumerationCutShort) {
+  expect_enumeration_cut_short<31>();
+  expect_enumeration_cut_short<32>();
+  expect_enumeration_cut_short<33>();
+  expect_enumeration_cut_short<63>();
+  expect_enumeration_cut_short<64>();
 }
 
 // ---- the tiny world, complete: an exact reference that shares no formulation with the kernel. The solutions with
@@ -736,11 +827,11 @@ TEST(Hlcp, GivesTheSameBitsForCapacityBeyondTheOrder) {
 // ---- the border of what doubles can hold
 
 template <int N>
-void expect_invalid_wherever(double bad) {
+void expect_invalid_wherever(double bad, int stride = 1) {
   std::mt19937_64 random(4);
   const Hlcp<N> good = dyadic<N>(random, false);
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < 2 * N + 1; ++j) {
+  for (int i = 0; i < N; i += stride)
+    for (int j = 0; j < 2 * N + 1; j += stride) {
       Hlcp<N> problem = good;
       (j < N ? problem.plus[i][j] : j < 2 * N ? problem.minus[i][j - N] : problem.b[i]) = bad;
       for (unsigned code = 0; code < (1U << std::min(N, 3)); ++code)
@@ -755,6 +846,7 @@ TEST(Hlcp, RefusesWhatIsNotFinite) {
     expect_invalid_wherever<3>(bad);
     expect_invalid_wherever<6>(bad);
     expect_invalid_wherever<17>(bad);
+    expect_invalid_wherever<64>(bad, 16);
   }
 }
 
@@ -862,10 +954,10 @@ TEST(Hlcp, SolvesTiesOfIllConditionedProblems) {
 
 // ---- orders and the matrix border
 
-TEST(Hlcp, SolvesOrdersZeroToThirtyTwo) {
-  Hlcp<32> problem = {};
-  HlcpSolution<32> solution = start<32>(0x5555);
-  for (int n : {-1, 33}) {
+TEST(Hlcp, SolvesOrdersZeroToSixtyFour) {
+  Hlcp<64> problem = {};
+  HlcpSolution<64> solution = start<64>(0x5555);
+  for (int n : {-1, 65}) {
     slideway::solve(problem, n, solution);
     EXPECT_EQ(solution.status, Status::invalid_input);
   }
@@ -873,14 +965,105 @@ TEST(Hlcp, SolvesOrdersZeroToThirtyTwo) {
   EXPECT_EQ(solution.status, Status::ok);
   EXPECT_EQ(solution.uniqueness, Uniqueness::certified);
   std::mt19937_64 random(7);
-  const Hlcp<32> full = dyadic<32>(random, false);
-  for (int n = 1; n <= 32; ++n) {
-    solution = start<32>(0x5555);
+  const Hlcp<64> full = dyadic<64>(random, false);
+  for (int n = 1; n <= 64; ++n) {
+    solution = start<64>(0x5555);
     slideway::solve(full, n, solution);
     ASSERT_EQ(solution.status, Status::ok) << n;
     EXPECT_LE(solution.residual, 4 * (n + 1) * 0x1p-53);
   }
-  expect_residual<32>(full, answer(full, 0x12345678));
+  expect_residual<64>(full, answer(full, 0x123456789abcdef0));
+}
+
+/// As dyadic(); x_k = +-(1 + k/8), negative where `code` has a bit.
+template <int N>
+Hlcp<N> planted(std::mt19937_64& random, std::uint64_t code) {
+  Hlcp<N> problem = dyadic<N>(random, false);
+  for (double& b : problem.b) b = 0.0;
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) {
+      const bool negative = ((code >> j) & 1) != 0;
+      problem.b[i] += (negative ? -problem.minus[i][j] : problem.plus[i][j]) * (1.0 + j / 8.0);
+    }
+  return problem;
+}
+
+template <int N>
+void expect_planted_solution() {
+  std::mt19937_64 random(N);
+  const std::uint64_t right = random();
+  const Hlcp<N> problem = planted<N>(random, right);
+  const HlcpSolution<N> first = answer(problem, right);
+  EXPECT_EQ(first.status, Status::ok);
+  EXPECT_EQ(first.uniqueness, Uniqueness::certified);
+  EXPECT_EQ(first.solves, 1);
+  for (int k = 0; k < N; ++k) {
+    EXPECT_EQ(first.sign[k], ((right >> k) & 1) != 0 ? -1 : 1);
+    EXPECT_NEAR(first.x[k] * first.sign[k], 1.0 + k / 8.0, 1e-13);
+  }
+  for (const std::uint64_t wrong :
+       {~right, std::uint64_t{0}, right ^ (std::uint64_t{1} << (N - 1)), right ^ 0xffffffff00000000}) {
+    const HlcpSolution<N> solution = answer(problem, wrong);
+    EXPECT_TRUE(same_bits(solution, first)) << name(solution.status);
+    EXPECT_LE(solution.solves, 5) << "of iteration; flips would need one for each wrong sign";
+  }
+  HlcpSolution<N> bounded = start<N>(right);
+  slideway::solve(problem, static_cast<int>(N), bounded);
+  EXPECT_TRUE(same_bits(bounded, first));
+}
+
+TEST(Hlcp, FindsThePlantedSolutionFromRightAndWrongSigns) {
+  expect_planted_solution<33>();
+  expect_planted_solution<34>();
+  expect_planted_solution<48>();
+  expect_planted_solution<63>();
+  expect_planted_solution<64>();
+}
+
+TEST(Hlcp, GivesTheSameBitsFromManyStartsOfLargeOrder) {
+  std::mt19937_64 random(12);
+  for (int round = 0; round < 10; ++round) {
+    const Hlcp<64> problem = dyadic<64>(random, round % 2 == 0);
+    const HlcpSolution<64> first = answer(problem);
+    ASSERT_EQ(first.uniqueness, Uniqueness::certified);
+    for (int other = 0; other < 20; ++other) ASSERT_TRUE(same_bits(answer(problem, random()), first)) << round;
+  }
+}
+
+TEST(Hlcp, FindsPivotsInEveryRow) {
+  // With the rows turned upside down, every pivot is in the row that is last but k; what is eliminated is the same.
+  std::mt19937_64 random(13);
+  const std::uint64_t right = random();
+  const Hlcp<64> problem = planted<64>(random, right);
+  Hlcp<64> turned = problem;
+  for (int i = 0; i < 64; ++i) {
+    for (int j = 0; j < 64; ++j) {
+      turned.plus[i][j] = problem.plus[63 - i][j];
+      turned.minus[i][j] = problem.minus[63 - i][j];
+    }
+    turned.b[i] = problem.b[63 - i];
+  }
+  const HlcpSolution<64> solution = answer(turned, right);
+  expect_residual(turned, solution);
+  EXPECT_TRUE(same_bits(solution, answer(problem, right)));
+}
+
+TEST(Hlcp, KeepsTheSignsGivenWhenItScales) {
+  // Rows this small are refused by the first trial; the second, scaled, has the signs given.
+  std::mt19937_64 random(14);
+  const std::uint64_t right = random();
+  const Hlcp<64> problem = planted<64>(random, right);
+  Hlcp<64> small = problem;
+  for (int i = 0; i < 64; ++i) {
+    for (int j = 0; j < 64; ++j) {
+      small.plus[i][j] *= 0x1p-300;
+      small.minus[i][j] *= 0x1p-300;
+    }
+    small.b[i] *= 0x1p-300;
+  }
+  const HlcpSolution<64> solution = answer(small, right);
+  EXPECT_TRUE(same_bits(solution, answer(problem, right)));
+  EXPECT_EQ(solution.solves, 2);
 }
 
 TEST(Hlcp, TakesAnythingButMinusOneForPlus) {
@@ -966,6 +1149,32 @@ TEST(Hlcp, RefusesEigenMatricesOfDifferentSizes) {
   EXPECT_EQ(empty.x.size(), 0);
   const Bounded most = Bounded::Identity(32, 32);
   EXPECT_EQ(solve_hlcp(most, most, BoundedVector::Ones(32).eval()).status, Status::ok);
+}
+
+TEST(Hlcp, SolvesEigenMatricesUpToOrderSixtyFour) {
+  std::mt19937_64 random(15);
+  const std::uint64_t right = random();
+  const Hlcp<64> problem = planted<64>(random, right);
+  const HlcpSolution<64> expected = answer(problem, right);
+  using Square = Eigen::Matrix<double, 64, 64, Eigen::RowMajor>;
+  using Column = Eigen::Matrix<double, 64, 1>;
+  const Eigen::Map<const Square> plus(&problem.plus[0][0]), minus(&problem.minus[0][0]);
+  const Eigen::Map<const Column> b(problem.b);
+  const auto fixed = solve_hlcp(plus, minus, b, expected.sign);
+  EXPECT_EQ(fixed.status, Status::ok);
+  EXPECT_EQ(fixed.solves, 1);
+  using AnySquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const AnySquare> any_plus(plus.data(), 64, 64), any_minus(minus.data(), 64, 64);
+  const Eigen::Map<const Eigen::VectorXd> any_b(problem.b, 64);
+  const auto dynamic = solve_hlcp(any_plus, any_minus, any_b, expected.sign);
+  EXPECT_EQ(dynamic.status, Status::ok);
+  ASSERT_EQ(dynamic.x.size(), 64);
+  EXPECT_EQ(std::memcmp(fixed.x.data(), expected.x, sizeof expected.x), 0);
+  EXPECT_EQ(std::memcmp(dynamic.x.data(), expected.x, sizeof expected.x), 0);
+  const std::vector<double> large(65 * 65);
+  const Eigen::Map<const AnySquare> matrix(large.data(), 65, 65);
+  const Eigen::Map<const Eigen::VectorXd> column(large.data(), 65);
+  EXPECT_EQ(solve_hlcp(matrix, matrix, column).status, Status::invalid_input);
 }
 
 }  // namespace

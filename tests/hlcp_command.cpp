@@ -161,6 +161,12 @@ TEST_F(HlcpCommand, HoldsItsDocumentsToTheSchema) {
   EXPECT_GE(documents, 7);
   write(tmp / "inaccurate.json.out",
         answer(R"({"A_plus": [[1e-300]], "A_minus": [[1e-300]], "b": [1e300]})", 1).dump());
+  json largest = {{"M", json::parse(identity(64))}, {"q", std::vector<int>(64)}};
+  for (int k = 0; k < 64; ++k) largest["q"][k] = k % 2 != 0 ? -k : k;
+  largest = answer(largest.dump(), 0);
+  EXPECT_EQ(largest["order"], 64);
+  EXPECT_EQ(largest["x"][63], -63);
+  write(tmp / "largest.json.out", largest.dump());
   write(tmp / "hold.py", R"(import json, sys
 import jsonschema
 schema = json.load(open(sys.argv[1]))
@@ -280,8 +286,8 @@ std::vector<Bad> bad_problems() {
       {"rows.json", R"({"M": 1, "q": [1]})", ": M must be a list of rows, [[..], [..]], not number"},
       {"right.json", R"({"M": [[1]], "q": 1})", ": q must be a list of numbers, not number"},
       {"infinite.json", R"({"M": [[1e999]], "q": [1]})", ": has a number beyond the range of doubles, 1.8e308"},
-      {"empty_matrix.json", R"({"M": [], "q": []})", ": M has order 0; the kernel takes orders 1 to 32"},
-      {"large.json", R"({"q": [], "M": )" + identity(33) + "}", ": M has order 33; the kernel takes orders 1 to 32"},
+      {"empty_matrix.json", R"({"M": [], "q": []})", ": M has order 0; the kernel takes orders 1 to 64"},
+      {"large.json", R"({"q": [], "M": )" + identity(65) + "}", ": M has order 65; the kernel takes orders 1 to 64"},
       {"comma.json", "{\n \"M\": [[1]],\n \"q\": [1],\n}\n", ":4: is not JSON: syntax error while parsing ..."},
       {"open.json", "{\n\"M\n\": [[1]]}", ":2: is not JSON: syntax error while parsing ..."},
       {"nan.json", R"({"M": [[NaN]], "q": [1]})", ":1: is not JSON: syntax error while parsing ..."},
@@ -291,9 +297,9 @@ std::vector<Bad> bad_problems() {
       {"short.dat", "2 0 2 2 2 2\n1 0 0 1\n3\n", ": ends before q[1]; " + layout},
       {"plain.dat", "2\n1 0\n0 1\n3 4\n", ":2: the storage type is 1, not 0 (dense); " + layout},
       {"sizes.dat", "2 0 2\n3 2 3\n", ":2: M has 3 columns, and n is 2; " + layout},
-      {"order.dat", "2.5 0", ":1: n is 2.5; the kernel takes orders 1 to 32"},
-      {"order_0.dat", "\n\n0", ":3: n is 0; the kernel takes orders 1 to 32"},
-      {"order_40.dat", "40 0", ":1: n is 40; the kernel takes orders 1 to 32"},
+      {"order.dat", "2.5 0", ":1: n is 2.5; the kernel takes orders 1 to 64"},
+      {"order_0.dat", "\n\n0", ":3: n is 0; the kernel takes orders 1 to 64"},
+      {"order_65.dat", "65 0", ":1: n is 65; the kernel takes orders 1 to 64"},
       {"word.dat", "1 0 1 1 1 1\r\n1 x1\n", ":2: q[0] must be a number, not 'x1'"},
       {"infinite.dat", "1 0 1 1 1 1\n1e999 1\n", ":2: M[0][0] is '1e999', beyond the range of doubles"},
       {"not_a_number.dat", "1 0 1 1 1 1 nan 1\n", ":1: M[0][0] is 'nan', beyond the range of doubles"},

@@ -202,9 +202,10 @@ struct HlcpResult {
   double residual;
 };
 
-/// solve() for Eigen matrices of fixed size, or of dynamic size up to 32 (x is stored in place, nothing allocates).
+/// solve() for Eigen matrices of fixed size, or of dynamic size up to 64 (x is stored in place, nothing allocates).
 /// Matrices, maps and blocks of them: only their elements are read, no Eigen arithmetic is used. `signs`: n numbers, -1
-/// or +1. invalid_input if the dimensions do not agree or n > 32; x is zero unless ok.
+/// or +1. invalid_input if the dimensions do not agree or n > 64; x is zero unless ok. Stack: 280 KB, or about 70
+/// bytes times the square of the most rows that the types of fixed or bounded size (Eigen's MaxRows) allow.
 template <class Plus, class Minus, class Right>
 auto solve_hlcp(const Eigen::MatrixBase<Plus>& a_plus, const Eigen::MatrixBase<Minus>& a_minus,
                 const Eigen::MatrixBase<Right>& b, const signed char* signs = nullptr,
@@ -213,7 +214,7 @@ auto solve_hlcp(const Eigen::MatrixBase<Plus>& a_plus, const Eigen::MatrixBase<M
   constexpr int most = Right::MaxRowsAtCompileTime;
   constexpr int capacity = most < 1 || most > hlcp_max_order ? hlcp_max_order : most;
   static_assert(Right::ColsAtCompileTime == 1, "b is a column");
-  static_assert(rows <= hlcp_max_order, "n <= 32");
+  static_assert(rows <= hlcp_max_order, "n <= 64");
   HlcpResult<Eigen::Matrix<double, rows, 1, 0, rows >= 0 ? rows : capacity, 1>, capacity> result;
   const auto n = b.rows();
   const bool agree =

@@ -5,13 +5,13 @@
 
 namespace slideway {
 
-inline constexpr int hlcp_max_order = 32;
+inline constexpr int hlcp_max_order = 64;
 
 /// A+ x+ - A- x- = b, x+ = max(x, 0), x- = max(-x, 0); the same as S x + S*|x| = b with A+ = S + S*, A- = S - S*. Row
 /// by row.
 template <int Capacity>
 struct Hlcp {
-  static_assert(Capacity >= 1 && Capacity <= hlcp_max_order, "1 <= order <= 32");
+  static_assert(Capacity >= 1 && Capacity <= hlcp_max_order, "1 <= order <= 64");
   alignas(16) double plus[Capacity][Capacity];   ///< A+
   alignas(16) double minus[Capacity][Capacity];  ///< A-
   alignas(16) double b[Capacity];

@@ -105,9 +105,7 @@ struct Search {
 template <int Capacity>
 inline bool try_signs(Search<Capacity>& search, const signed char* signs) noexcept {
   ++search.solves;
-  if constexpr (Capacity > 2)
-    if (search.n > 2) return attempt(search.scaled.problem, search.n, signs, search.trial);
-  return attempt_small(search.scaled.problem, search.n, signs, search.trial);
+  return attempt_any(search.scaled.problem, search.n, signs, search.trial);
 }
 
 /// Sets to zero the components of x that are not of the sign sigma in {-1, 0, 1}; whether the residual allows it. If
@@ -153,13 +151,15 @@ inline void take_signs(const Search<Capacity>& search, signed char* signs) noexc
   }
 }
 
-inline std::uint32_t code_of(const signed char* signs, int n) noexcept {
-  std::uint32_t code = 0;
-  for (int k = 0; k < n; ++k) code |= static_cast<std::uint32_t>(signs[k] == -1) << k;
+static_assert(hlcp_max_order <= 64, "a bit of a word for each sign");
+
+inline Word code_of(const signed char* signs, int n) noexcept {
+  Word code = 0;
+  for (int k = 0; k < n; ++k) code |= static_cast<Word>(signs[k] == -1) << k;
   return code;
 }
 
-inline void signs_of(std::uint32_t code, int n, signed char* signs) noexcept {
+inline void signs_of(Word code, int n, signed char* signs) noexcept {
   for (int k = 0; k < n; ++k) signs[k] = static_cast<signed char>(((code >> k) & 1) != 0 ? -1 : 1);
 }
 
@@ -169,7 +169,7 @@ enum class Found : unsigned char { solution, nothing, limit };
 /// gives up on a pattern seen before.
 template <int Capacity>
 inline Found iterate_signs(Search<Capacity>& search, signed char* signs) noexcept {
-  std::uint32_t seen[hlcp_max_order + 4];
+  Word seen[Capacity + 4];
   for (int step = 0; step < search.n + 4; ++step) {
     if (search.solves >= search.max_solves) return Found::limit;
     seen[step] = code_of(signs, search.n);
@@ -192,7 +192,7 @@ inline Found iterate_signs(Search<Capacity>& search, signed char* signs) noexcep
 template <int Capacity>
 inline Found flip_least(Search<Capacity>& search, signed char* signs) noexcept {
   const int n = search.n;
-  std::uint32_t flips[Capacity] = {};
+  Word flips[Capacity] = {};
   while (search.solves < search.max_solves) {
     const bool accurate = try_signs(search, signs);
     if (!search.trial.regular) return Found::nothing;
@@ -201,7 +201,7 @@ inline Found flip_least(Search<Capacity>& search, signed char* signs) noexcept {
     if (accurate && settle(search, signs)) return Found::solution;
     int least = 0;
     while (least < n && !(signs[least] * x[least] < 0.0)) ++least;
-    if (least == n || ++flips[least] > (std::uint32_t{1} << (n - 1 - least))) return Found::nothing;
+    if (least == n || ++flips[least] > (Word{1} << (n - 1 - least))) return Found::nothing;
     signs[least] = static_cast<signed char>(-signs[least]);
   }
   return Found::limit;
@@ -239,7 +239,7 @@ inline Status finish(Search<Capacity>& search, const Decided<Order>& decided) no
   Trial<Capacity>& trial = search.trial;
   signed char signs[hlcp_max_order];
   bool regular = false;
-  for (std::uint32_t code = 0; code < (std::uint32_t{1} << search.n); ++code) {
+  for (Word code = 0; code < (Word{1} << search.n); ++code) {
     signs_of(code, search.n, signs);
     if (!compatible(signs, decided.sigma, search.n)) continue;
     try_signs(search, signs);
@@ -349,16 +349,13 @@ template <int Capacity>
 inline void enumerate(Search<Capacity>& search, NotUnique policy, HlcpSolution<Capacity>& solution) noexcept {
   Census<Capacity> census = {};
   signed char signs[hlcp_max_order] = {};
-  const std::uint64_t end = std::uint64_t{1} << search.n;
-  bool complete = true;
-  for (std::uint64_t code = 0; code < end && census.solutions < 2; ++code) {
-    if (search.solves >= search.max_solves) {
-      complete = false;
-      break;
-    }
-    signs_of(static_cast<std::uint32_t>(code), search.n, signs);
+  const Word last = ~Word{0} >> (64 - search.n);  // no 2^n to count to: for n = 64 there is none
+  bool complete = false;
+  for (Word code = 0; !complete && census.solutions < 2 && search.solves < search.max_solves; ++code) {
+    signs_of(code, search.n, signs);
     const bool accurate = try_signs(search, signs);
     enter(search, signs, accurate, census);
+    complete = code == last;
   }
   if (census.solutions == 0)
     return refuse(solution,
@@ -421,7 +418,7 @@ template <int Capacity>
   if (search.scaled.status != Status::ok) return refuse(solution, search.scaled.status, solves);
   signed char first[hlcp_max_order];
   signed char signs[hlcp_max_order];
-  const std::uint32_t code = code_of(solution.sign, n);
+  const Word code = code_of(solution.sign, n);
   signs_of(code, n, first);
   signs_of(code, n, signs);
   if constexpr (Capacity > decidable)

@@ -35,7 +35,7 @@ inline double power_of_two(int k) noexcept { return real(static_cast<Word>(k + 1
 /// A component below 2^-20 of the largest may owe its sign to rounding; then the signs are decided anew from a start
 /// that the data alone determine. Why 2^-20: the proofs of uniqueness show |W^-1| R <= 2^22 for every matrix W between
 /// A+ and A-, R the row sizes, and two vectors with the residual allowed differ by at most 2 * 5 (n + 1) 2^-53 * 2 *
-/// 2^22 max|x| <= 2^-20.6 max|x| for n <= 32. A wider window costs solves, a narrower one bits.
+/// 2^22 max|x| <= 2^-20.6 max|x| for n <= 64. A wider window costs solves, a narrower one bits.
 inline constexpr double tie_window = 0x1p-20;
 
 /// One sign pattern: W(s), its factors, and what follows from them.
@@ -167,13 +167,18 @@ inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* si
   return total <= 0x1p200 && least >= 0x1p-200;
 }
 
+/// What a pivot's key keeps for its row, the last six bits: magnitudes that agree to 2^-46 are ties.
+inline constexpr Word row_bits = hlcp_max_order - 1;
+static_assert((hlcp_max_order & (hlcp_max_order - 1)) == 0, "a power of two");
+
 /// The row with the largest weighted entry in column k, rows k and below, and that entry: bits of magnitudes compare
-/// like numbers, the last five carry the row, so that one integer maximum finds both and ties go to the first row.
+/// like numbers, the last ones carry the row, so that one integer maximum finds both and ties go to the first row.
 template <int Capacity, class Count>
 inline Word pivot_in(const Trial<Capacity>& trial, int k, Count n) noexcept {
   Word best = 0;
   for (int i = k; i < n; ++i) {
-    const Word key = ((bits(trial.lu[i][k] * trial.weight[i]) & ~sign_bit) & ~Word{31}) | static_cast<Word>(31 - i);
+    const Word size = bits(trial.lu[i][k] * trial.weight[i]) & ~sign_bit;
+    const Word key = (size & ~row_bits) | (row_bits - static_cast<Word>(i));
     best = key > best ? key : best;
   }
   return best;
@@ -201,7 +206,7 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
   Word least = bits(4.0);
   const auto pivot_step = [&](int k) __attribute__((always_inline)) {
     const Word best = pivot_in(trial, k, n);
-    const int p = 31 - static_cast<int>(best & 31);
+    const int p = static_cast<int>(row_bits - (best & row_bits));
     least = best < least ? best : least;
     if (p != k) exchange(trial, k, p, n);
     const double inverse = 1.0 / trial.lu[k][k];
@@ -216,7 +221,7 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
     }
   };
   each(n, pivot_step);
-  return real(least & ~Word{31});
+  return real(least & ~row_bits);
 }
 
 /// x = U^-1 side, and in the other lane reach = max M(U)^-1 bound.
@@ -443,6 +448,16 @@ inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed cha
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, n, trial);
   return trial.accurate;
+}
+
+/// One trial of order n >= 1, whatever n is. Whether the matrix is regular and x accurate.
+template <int Capacity>
+inline bool attempt_any(const Hlcp<Capacity>& problem, int n, const signed char* signs,
+                        Trial<Capacity>& trial) noexcept {
+  if constexpr (Capacity > 2) {
+    if (n > 2) return attempt(problem, n, signs, trial);
+  }
+  return attempt_small(problem, n, signs, trial);
 }
 
 }  // namespace slideway::hlcp_detail
