@@ -20,7 +20,10 @@ bool applies(const RunStepper& stepper, const io::SceneFile& file) {
 }
 
 void set_up(RunStepper& stepper, const StepOptions& options, const std::string& method) {
-  stepper.method = method == "euler" ? Method::euler : method == "kinematic" ? Method::kinematic : Method::rk4;
+  stepper.method =
+      *std::find_if(std::begin(methods), std::end(methods), [&](const Method one) { return method == name(one); });
+  stepper.theta = options.theta;
+  stepper.stabilise = options.stabilise == "projection" ? Stabilise::projection : Stabilise::baumgarte;
   stepper.gains.alpha = options.alpha.value_or(stepper.gains.alpha);
   stepper.gains.beta = options.beta.value_or(stepper.gains.beta);
   stepper.hlcp.not_unique = options.not_unique == "continue" ? NotUnique::continue_along_signs : NotUnique::refuse;
@@ -70,15 +73,19 @@ std::optional<Preparation> prepare(const StepOptions& options, int& status) {
   set_up(*stepper, options, recording.method);
   recording.alpha = stepper->gains.alpha;
   recording.beta = stepper->gains.beta;
+  recording.located = is_located(stepper->method);
+  recording.stabilise = options.stabilise;
+  recording.theta = options.theta;
   RunInputs inputs;
   for (std::size_t i = 0; i < values->size(); ++i) inputs.input[i].value = (*values)[i];
   if (!applies(*stepper, *file)) return std::nullopt;
-  const auto start = starting_state(*stepper, inputs, options);
+  auto start = starting_state(*stepper, inputs, options);
   if (!start) {
     status = refused;
     return std::nullopt;
   }
   const Plan plan(recording.duration, recording.dt);
+  start->dt = plan.dt;  // so that the forces at the start can be means of the first step, where a method has no others
   status = good;
   return Preparation{std::move(recording), std::move(stepper), inputs, *start, plan};
 }

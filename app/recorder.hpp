@@ -28,7 +28,8 @@ class Recorder {
   bool observe(const RunState& state);
   void take_extremes(const Report& report);
   void find_events(const RunState& before, const RunState& now);
-  void add_event(const RunState& now, int guide, int contact, EventKind kind);
+  void add_event(const Event& event);
+  void follow_modes(const RunState& before, const Report& report, bool sampled);
   void find_peaks();
   void find_energies();
   void keep(bool row, bool sample);
@@ -42,6 +43,8 @@ class Recorder {
   RunState state_;
   Reaction<io::RunSize> reaction_;
   bool reaction_known_ = false, row_written_ = true, sample_kept_ = true;
+  Uniqueness weakest_ = Uniqueness::certified;  ///< since the sample that was kept last
+  std::size_t mode_changes_ = 0;
   double kinetic_ = 0, potential_ = 0;
   double kinetic_most_ = 0, potential_least_ = 0, potential_most_ = 0;
 };

@@ -9,16 +9,7 @@
 
 namespace slideway::app {
 
-using io::EventKind;
 using io::Sample;
-
-/// Seen between two steps; its time is that of the later one.
-struct Event {
-  double t = 0;
-  int guide = none;
-  int contact = none;  ///< of the guide, 0 or 1; none for what the whole guide does
-  EventKind kind = EventKind::slip_reversal;
-};
 
 /// The value of largest magnitude over all steps and when it was reached.
 struct Peak {
@@ -26,19 +17,31 @@ struct Peak {
   double t = 0;
 };
 
+/// A guide's mode from t on, until the next one begins.
+struct ModeSpan {
+  double t = 0;
+  int mode = 0;  ///< as in State
+};
+
 struct Recording {
   io::SceneFile file;  ///< scene, names, hash, settings
 
   std::string method;
   double dt = 0, duration = 0;
+  bool located = false;              ///< by this method, events have times of their own
   double alpha = 0, beta = 0;        ///< Baumgarte, 1/s and 1/s^2
+  std::string stabilise;             ///< baumgarte or projection
+  double theta = 0;                  ///< of moreau
   std::vector<double> input_values;  ///< constant over the run, in the order of file.input_names
 
   std::vector<Sample>
-      samples;                ///< first, every so many steps, last; about 2000 at most; empty if the start was refused
-  std::vector<Event> events;  ///< the first `most_events`
+      samples;  ///< first, every so many steps, last; about 2000 at most; empty if the start was refused
+  std::vector<Uniqueness> weakest;  ///< of each sample: all that was decided since the one before
+  std::vector<Event> events;        ///< the first `most_events`
   static constexpr std::size_t most_events = 10000;
   long long events_left_out = 0;
+  /// Per guide, none without friction. After `most_events` changes only as samples show them.
+  std::vector<std::vector<ModeSpan>> modes;
 
   Status status = Status::ok;
   std::string message;                            ///< what the command prints when status is not ok

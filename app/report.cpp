@@ -151,6 +151,9 @@ Json run(const Recording& recording) {
   return {{"method", recording.method},
           {"dt", number(recording.dt)},
           {"duration", number(recording.duration)},
+          {"located", recording.located},
+          {"stabilise", recording.stabilise},
+          {"theta", number(recording.theta)},
           {"steps", recording.steps},
           {"t", number(recording.t)},
           {"status", slideway::name(recording.status)},
@@ -162,6 +165,7 @@ Json run(const Recording& recording) {
           {"residual", number(recording.residual)},
           {"solves_max", recording.solves_max},
           {"unlocated_events", recording.unlocated_events},
+          {"events_left_out", recording.events_left_out},
           {"ns_per_step", number(recording.ns_per_step)}};
 }
 
@@ -211,6 +215,31 @@ Json events(const Recording& recording) {
   return result;
 }
 
+/// By guide: [time, the mode from then on].
+Json modes(const Recording& recording) {
+  Json result = Json::array();
+  for (const std::vector<ModeSpan>& spans : recording.modes) {
+    Json list = Json::array();
+    for (const ModeSpan& span : spans) list.push_back({number(span.t), span.mode});
+    result.push_back(std::move(list));
+  }
+  return result;
+}
+
+/// [time, the weakest statement from then on]; it changes at samples.
+Json uniqueness(const Recording& recording) {
+  Json result = Json::array();
+  if (recording.samples.empty()) return result;
+  Uniqueness last = recording.weakest.front();
+  result.push_back({number(recording.samples.front().t), name(last)});
+  for (std::size_t i = 1; i < recording.samples.size(); ++i) {
+    if (recording.weakest[i] == last) continue;
+    last = recording.weakest[i];
+    result.push_back({number(recording.samples[i - 1].t), name(last)});
+  }
+  return result;
+}
+
 Json data(const Recording& recording) {
   return {
       {"version", SLIDEWAY_VERSION},
@@ -224,6 +253,8 @@ Json data(const Recording& recording) {
         {"pin", peaks(recording.pin_peak)}}},
       {"energy", energy(recording)},
       {"events", events(recording)},
+      {"modes", modes(recording)},
+      {"uniqueness", uniqueness(recording)},
       {"samples", samples(recording)},
   };
 }

@@ -33,6 +33,8 @@ Json run_document(const Recording& recording) {
   json["dt"] = recording.dt;
   json["alpha"] = recording.alpha;
   json["beta"] = recording.beta;
+  json["stabilise"] = recording.stabilise;
+  json["theta"] = recording.theta;
   json["inputs"] = io::by_name(file.input_names, recording.input_values);
   json["steps"] = recording.steps;
   json["status"] = name(recording.status);

@@ -30,6 +30,15 @@ CLI::Validator not_negative() {
           "NUMBER"};
 }
 
+CLI::Validator from_zero_to_one() {
+  return {[](std::string& text) {
+            const auto value = finite_number(text);
+            return value && *value >= 0 && *value <= 1 ? std::string()
+                                                       : "must be a number from 0 to 1, not " + io::quote(text);
+          },
+          "NUMBER"};
+}
+
 CLI::Validator one_of(std::vector<std::string> choices) {
   return {[choices](std::string& text) {
             if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
@@ -53,6 +62,10 @@ void add_step_options(CLI::App& verb, StepOptions& options) {
   verb.add_option("--input", options.inputs, "NAME=V: a live input, constant over the run")->allow_extra_args(false);
   verb.add_option("--not-unique", options.not_unique, "When several sets of contact forces are possible")
       ->check(one_of({"refuse", "continue"}));
+  verb.add_option("--stabilise", options.stabilise, "What keeps the constraints from drifting")
+      ->check(one_of({"baumgarte", "projection"}));
+  verb.add_option("--theta", options.theta, "Of moreau: 0.5 takes forces at the middle of a step, 1 at its start")
+      ->check(from_zero_to_one());
   verb.add_flag("--quiet", options.quiet, "No table, no progress");
 }
 

@@ -18,7 +18,8 @@ struct StepOptions {
   std::string json, report;
   bool project_start = false, quiet = false;
   std::vector<std::string> inputs;
-  std::string not_unique = "refuse";
+  std::string not_unique = "refuse", stabilise = "baumgarte";
+  double theta = 0.5;
 };
 void add_step_options(CLI::App& verb, StepOptions& options);
 

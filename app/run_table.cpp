@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <slideway/method.hpp>
 
 namespace slideway::app {
 namespace {
@@ -75,6 +77,43 @@ void add_all_peaks(Table& table, const Recording& recording) {
   add_peaks(table, "pin", file.pin_names, recording.pin_peak, newtons(recording.pin_peak));
 }
 
+std::string kinds(const std::vector<Event>& events) {
+  std::string list;
+  for (const EventKind kind :
+       {EventKind::slip_reversal, EventKind::stick, EventKind::slip, EventKind::normal_reversal}) {
+    const auto count = std::count_if(events.begin(), events.end(), [=](const Event& e) { return e.kind == kind; });
+    if (count > 0) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, name(kind));
+  }
+  return list;
+}
+
+void add_events(Table& table, const Recording& recording) {
+  constexpr std::size_t most = 10;
+  const std::vector<Event>& events = recording.events;
+  if (events.empty()) return;
+  const long long all = static_cast<long long>(events.size()) + recording.events_left_out;
+  const std::size_t listed = std::min(most, events.size());
+  table.gap();
+  table.row("events", "{:>12} {}: {}{}", all, recording.located ? "located" : "seen after a step",
+            recording.events_left_out > 0 ? fmt::format("of the first {}, ", events.size()) : "", kinds(events));
+  for (std::size_t i = 0; i < listed; ++i) {
+    const Event& event = events[i];
+    const std::string& guide = recording.file.guide_names[static_cast<std::size_t>(event.guide)];
+    table.row("", "{:12.9g} s   {}{} {}", event.t, guide,
+              event.contact == none ? "" : fmt::format(".{}", event.contact), name(event.kind));
+  }
+  const long long more = all - static_cast<long long>(listed);
+  if (more > 0) table.row("", "{:>12} more", more);
+}
+
+/// With what else the method depends on.
+std::string method(const Recording& recording) {
+  std::string text = recording.method;
+  if (recording.method == name(Method::moreau)) text += fmt::format(", theta {:g}", recording.theta);
+  if (recording.stabilise != "baumgarte") text += ", " + recording.stabilise;
+  return text;
+}
+
 void add_energies(Table& table, const Recording& recording) {
   const double miss = recording.energy_miss();
   table.gap();
@@ -94,7 +133,7 @@ std::string run_table(const Recording& recording, const std::vector<const Output
   Table table;
   table.row("scene", "{}: {}", file.name, contents(file));
   for (const std::string& setting : file.settings) table.row("", "--set {}", setting);
-  table.row("ran", "{}, dt {:g} s, {} steps to t = {:.9g} s", recording.method, recording.dt, recording.steps,
+  table.row("ran", "{}, dt {:g} s, {} steps to t = {:.9g} s", method(recording), recording.dt, recording.steps,
             recording.t);
   table.row("status", "{}", name(recording.status));
   table.gap();
@@ -107,6 +146,7 @@ std::string run_table(const Recording& recording, const std::vector<const Output
     add_all_peaks(table, recording);
   }
   add_energies(table, recording);
+  add_events(table, recording);
   table.gap();
   table.row("time", "{:12.4g} ns a step", recording.ns_per_step);
   for (const Output* output : outputs) {

@@ -1,5 +1,6 @@
-// Cost of one rk4 step with its self-check: compile-time scene, run-time scene, and for crank_rocker_offset the floor,
-// a step derived by hand for that mechanism alone, without any check (floor_crank_rocker.hpp).
+// Cost of one rk4 step with its self-check: compile-time scene, run-time scene, rk4_located (with the events of the
+// run), and for crank_rocker_offset the floor, a step derived by hand for that mechanism alone, without any check
+// (floor_crank_rocker.hpp).
 //
 //     step [Google Benchmark's options]
 //     step --ratio                 medians of interleaved runs, and their ratios
@@ -22,6 +23,7 @@
 #include <slideway/scenes/v_engine_2.hpp>
 #include <slideway/scenes/v_engine_4.hpp>
 #include <slideway/scenes/v_engine_8.hpp>
+#include <slideway/self_test.hpp>
 #include <slideway/step.hpp>
 #include <string>
 #include <vector>
@@ -117,8 +119,11 @@ template <class F>
 void for_each_side(F&& f) {
   const auto sides = [&](const std::string& name, const auto& known, const auto& scene, double dt, int restart) {
     const slideway::RunTimeStepper<Room> run_time(at_run_time(scene));
+    auto located = known;
+    located.method = slideway::Method::rk4_located;
     f(name, Run(known, dt, restart));
     f(name + "_run_time", Run(run_time, dt, restart));
+    f(name + "_located", Run(located, dt, restart));
   };
   f("floor", Floor());
   sides("crank_rocker_offset", slideway::Stepper<crank_rocker_offset>{}, crank_rocker_offset, Floor::dt,
@@ -167,7 +172,8 @@ int print_ratios() {
   for (std::size_t side = 0; side < names.size(); ++side) {
     std::printf("%-30s %9.1f ns a step", names[side].c_str(), median(times[side]));
     if (side == 1) std::printf("   %.2f x floor", median(times[side]) / median(times[0]));
-    if (side > 0 && side % 2 == 0) std::printf("   %.2f x compile time", median(times[side]) / median(times[side - 1]));
+    if (side % 3 == 2) std::printf("   %.2f x compile time", median(times[side]) / median(times[side - 1]));
+    if (side > 0 && side % 3 == 0) std::printf("   %.2f x rk4", median(times[side]) / median(times[side - 2]));
     std::printf("\n");
   }
   return 0;
@@ -194,6 +200,11 @@ void register_all() {
           if (!side.ok()) bench.SkipWithError("a step was refused");
         },
         run);
+  });
+  benchmark::RegisterBenchmark("self_test", [](benchmark::State& bench) {
+    for (auto _ : bench) {
+      if (slideway::self_test() != slideway::SelfTest::passed) bench.SkipWithError("the self-test did not pass");
+    }
   });
 }
 

@@ -96,9 +96,10 @@ struct CallGraph {
   }
 };
 
-TEST(Memory, AStepOfTheCrankRockerNeedsFourKibibytesOfStack) {
-  // g++ only: clang has no call graph with frames. What is counted: all chains of calls of one step by any method,
-  // refused or not, at the optimisation of the release; not the C library's sin, cos and sqrt.
+TEST(Memory, AStepOfTheCrankRockerNeedsTwelveKibibytesOfStack) {
+  // Sliding alone needs a third of it; what is deepest is a guide that stops, asked at rest, an HLCP of order 3 decided
+  // exactly. g++ only: clang has no call graph with frames. What is counted: all chains of calls of one step by any
+  // method, refused or not, at the optimisation of the release; not the C library's sin, cos and sqrt.
   if (std::system("g++ --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "g++ is not installed";
   const auto directory = std::filesystem::path(testing::TempDir()) / ("slideway_memory_" + std::to_string(::getpid()));
   std::filesystem::create_directories(directory);
@@ -122,14 +123,14 @@ TEST(Memory, AStepOfTheCrankRockerNeedsFourKibibytesOfStack) {
   }
   std::filesystem::remove_all(directory);
   EXPECT_GT(bytes, 256u) << "the call graph was not understood";  // four stages of two coordinates are more than that
-  EXPECT_LE(bytes, 4 * kibibyte) << "deepest chain of calls:" << chain;
+  EXPECT_LE(bytes, 12 * kibibyte) << "deepest chain of calls:" << chain;
   RecordProperty("stack", static_cast<int>(bytes));
 }
 
 template <const auto& scene>
 void expect_no_heap(const char* what, double dt) {
   Stepper<scene> stepper;
-  for (const Method method : {Method::euler, Method::rk4, Method::kinematic}) {
+  for (const Method method : slideway::methods) {
     stepper.method = method;
     auto state = stepper.start();
     typename Stepper<scene>::Reaction reaction;

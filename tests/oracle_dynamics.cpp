@@ -10,6 +10,7 @@
 
 namespace {
 
+using slideway::EventKind;
 using namespace slideway::oracle;
 using namespace slideway::test;
 using slideway::ground;

@@ -120,7 +120,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OracleMethod,
                                          Case{"four_bar_chain", 4}, Case{"gantry", 4}, Case{"overhung_slider", 4},
                                          Case{"quick_return", 4}, Case{"rod_on_two_guides", 4}, Case{"slider_crank", 4},
                                          Case{"slider_crank_driven", 4}, Case{"squeezer", 4}, Case{"v_engine_2", 2},
-                                         Case{"v_engine_4", 1}, Case{"v_engine_8", 2}, Case{"v_engine_16", 1}),
+                                         Case{"v_engine_4", 1}, Case{"v_engine_8", 2}, Case{"v_engine_16", 1},
+                                         Case{"high_mass_ratio", 4}, Case{"painleve_klein", 4}, Case{"painleve_rod", 4},
+                                         Case{"slider_crank_equal", 4}),
                          [](const auto& test) { return std::string(test.param.scene); });
 
 /// The error of q and v at `length` s in so many steps, against the trajectory by Taylor series.

@@ -11,6 +11,7 @@
 
 namespace {
 
+using slideway::EventKind;
 using namespace slideway::oracle;
 using namespace slideway::test;
 using slideway::ground;
@@ -42,11 +43,11 @@ void expect_events(const Trajectory<Real>& trajectory, const std::vector<EventKi
 
 /// The scene's block with decimal data: 1 kg, 9.81 m/s^2.
 RealModel block(const Real& mu, const Real& speed, const Real& push) {
-  RealModel m = of_these_tests("block_on_plane");
+  RealModel m = shipped("block_on_plane");
   m.gravity.y = Real("-9.81");
   m.start.v[0] = speed;
   m.guide[0].mu = m.guide[0].mu_static = mu;
-  m.load[0].force.x = push;
+  m.load = {{0, m.body[0].com, {push, 0}, 0}};
   return m;
 }
 
@@ -167,7 +168,7 @@ TEST(BlockOnPlane, FollowsItsDriveWhateverTheLaw) {  // slowly enough for both f
 /// Slip: x'' = mu g - 2 x from x = mu0 g / 2 at the belt's speed until that speed comes back; x = centre + amplitude
 /// cos(w t - swing). Stick: back to where it left.
 TEST(Belt, SticksAndSlipsInClosedForm) {
-  RealModel m = of_these_tests("belt");
+  RealModel m = shipped("belt");
   const Real g("9.81"), speed = ratio(1, 10), mu = ratio(1, 10), mu_static = ratio(3, 20), w = sqrt(Real(2));
   m.gravity.y = -g;
   m.guide[0].mu = mu;
@@ -259,7 +260,7 @@ TEST(TwoRuns, OfACrankRockerLeftToItselfAgree) {
   compare_runs(shipped("crank_rocker_free"), 1, {EventKind::slip_reversal, EventKind::normal_reversal});
 }
 
-TEST(TwoRuns, OfTheBeltAgree) { compare_runs(of_these_tests("belt"), 30, {EventKind::stick, EventKind::slip}); }
+TEST(TwoRuns, OfTheBeltAgree) { compare_runs(shipped("belt"), 30, {EventKind::stick, EventKind::slip}); }
 
 TEST(TwoRuns, OfASliderCrankThatRestsAndBreaksAwayAgree) {
   compare_runs(of_these_tests("slider_crank_rests"), 6, {EventKind::stick, EventKind::slip, EventKind::slip_reversal});

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -70,6 +71,13 @@ std::string attribute(const std::string& document, const std::string& name) {
   return std::regex_search(head, match, std::regex("<html[^>]* " + name + "=\"([^\"]*)\"")) ? match[1].str() : "";
 }
 
+/// What a page draws.
+nlohmann::json data_of(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t from = page.find(open) + open.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
 class Report : public testing::TestWithParam<const char*> {};
 
 TEST_P(Report, IsDrawnWithoutAnError) {
@@ -103,6 +111,58 @@ INSTANTIATE_TEST_SUITE_P(Runs, Report,
                            const auto scene = arguments.find(' ') + 1;
                            return arguments.substr(scene, arguments.find(' ', scene) - scene);
                          });
+
+// Slips and sticks in closed form: see scenes/belt.toml.
+TEST(ReportStrips, HaveTheModesAtTheTimesOfTheEvents) {
+  const double slips = 7.3575, sticks = slips + 2.6184222465698972, slips_again = sticks + 4.905;
+  const Directory directory;
+  const std::string page = report_of(directory, "run belt --duration 16 --method rk4_located");
+  const nlohmann::json data = data_of(page), &modes = data["modes"], &events = data["events"];
+  ASSERT_EQ(modes.size(), 1u);
+  ASSERT_EQ(modes[0].size(), 4u);
+  ASSERT_EQ(events.size(), 3u);
+  const double times[] = {0, slips, sticks, slips_again};
+  const char* kinds[] = {"", "slip", "stick", "slip"};
+  const int wanted[] = {0, -1, 0, -1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(modes[0][i][0].get<double>(), times[i], 1e-7);
+    EXPECT_EQ(modes[0][i][1], wanted[i]);
+    if (i == 0) continue;
+    EXPECT_EQ(modes[0][i][0], events[i - 1][0]);
+    EXPECT_EQ(events[i - 1][2], kinds[i]);
+  }
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const std::string document = document_of(directory, page, 400);
+  EXPECT_EQ(attribute(document, "data-ready"), "ok");
+  EXPECT_EQ(attribute(document, "data-charts").rfind("modes slip", 0), 0u) << "and no strip of uniqueness";
+  EXPECT_NE(document.find(">top: slips − 23.4 %, rests 76.6 %<"), std::string::npos);
+  EXPECT_NE(document.find(">slip, 2<"), std::string::npos);
+  EXPECT_NE(document.find("located times of events"), std::string::npos);
+}
+
+TEST(ReportStrips, SeeModesAfterAStepWhereEventsAreNotLocated) {
+  const Directory directory;
+  const nlohmann::json data = data_of(report_of(directory, "run belt --duration 10 --dt 0.01 --method rk4"));
+  const nlohmann::json& spans = data["modes"][0];
+  ASSERT_EQ(spans.size(), 3u);
+  EXPECT_NEAR(spans[1][0].get<double>(), 7.3575 + 0.005, 0.0051);
+  EXPECT_EQ(spans[1][0], data["events"][0][0]);
+  EXPECT_EQ(spans[0][1], 0);
+  EXPECT_EQ(spans[1][1], -1);
+  EXPECT_EQ(spans[2][1], 0);
+}
+
+TEST(ReportStrips, ShowWhereUniquenessIsNotCertified) {
+  const Directory directory;
+  const std::string page = report_of(directory, "run trammel_at_rest --duration 0.1");
+  const nlohmann::json data = data_of(page), from_the_start = {{0.0, "motion_only"}};
+  EXPECT_EQ(data["uniqueness"], from_the_start);
+  if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";
+  const std::string document = document_of(directory, page, 400);
+  EXPECT_EQ(attribute(document, "data-ready"), "ok");
+  EXPECT_EQ(attribute(document, "data-charts").rfind("modes uniqueness slip", 0), 0u);
+  EXPECT_NE(document.find(">forces: motion only 100 %<"), std::string::npos);
+}
 
 TEST(ReportOfARefusal, SaysWhy) {
   if (!browser_is_here()) GTEST_SKIP() << "chromium is not installed";

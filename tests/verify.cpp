@@ -143,8 +143,9 @@ TEST_P(VerifyFull, PassesAShippedScene) {
 INSTANTIATE_TEST_SUITE_P(Scenes, VerifyFull,
                          testing::Values("crank_rocker_free", "crank_rocker_offset", "crank_rocker_two_contacts",
                                          "crank_rocker_weightless", "elliptic_trammel", "four_bar_chain", "gantry",
-                                         "overhung_slider", "quick_return", "rod_on_two_guides", "slider_crank",
-                                         "slider_crank_driven", "squeezer", "v_engine_2", "v_engine_4"),
+                                         "high_mass_ratio", "overhung_slider", "painleve_klein", "painleve_rod",
+                                         "quick_return", "rod_on_two_guides", "slider_crank", "slider_crank_driven",
+                                         "slider_crank_equal", "squeezer", "v_engine_2", "v_engine_4"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 }  // namespace

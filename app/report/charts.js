@@ -70,6 +70,7 @@ class Chart {
     this.spec = spec;
     this.times = times;
     this.events = events.length <= 100 ? events : [];
+    this.height = 190; // as in report.css
     this.many = spec.series.length > MANY;
     for (const series of spec.series) {
       series.peak = largest(series.values);
@@ -145,18 +146,26 @@ class Chart {
     const point = (x) => (log && x === 0 ? null : x); // zero has no place on a log scale
     const rows = this.times.map((t, i) => [t, ...this.order.map(({ values }) => point(values[i]))]);
     this.graph = new Dygraph(this.plot, rows, {
-      ...this.options(),
       labels: ["t", ...this.order.map((_, i) => `${i}`)],
       legend: "never", interactionModel: {}, showLabelsOnHighlight: false, highlightCircleSize: 0,
       xlabel: "t, s", ylabel: this.spec.axis, xLabelHeight: 15, yLabelWidth: 15, axisLabelFontSize: 12, rightGap: 14,
       logscale: Boolean(log), includeZero: !log, yRangePad: 6, xRangePad: 0, gridLineWidth: 1, axisLineWidth: 1,
-      valueRange: log ? this.decades() : null,
+      valueRange: this.valueRange(),
       underlayCallback: (context, area, graph) => this.drawUnder(context, area, graph),
       axes: {
         x: { ticker: linearTicks, pixelsPerLabel: 64, axisLabelWidth: 64, axisTickSize: 4 },
-        y: { ticker: log ? decadeTicks : linearTicks, pixelsPerLabel: 26, axisLabelWidth: 66, axisTickSize: 4 },
+        y: { ticker: this.ticker(), pixelsPerLabel: 26, axisLabelWidth: 66, axisTickSize: 4 },
       },
+      ...this.options(),
     });
+  }
+
+  valueRange() {
+    return this.spec.log ? this.decades() : null;
+  }
+
+  ticker() {
+    return this.spec.log ? decadeTicks : linearTicks;
   }
 
   /// What a log chart shows: seven decades at most below the largest value. A zero crossing would take the rest.
@@ -209,12 +218,16 @@ class Chart {
   }
 
   show(i) {
+    this.moveCursor(i);
+    for (const series of this.spec.series) series.value.textContent = series.format(series.values[i]);
+  }
+
+  moveCursor(i) {
     const t = this.times[i];
     const [low, high] = this.graph.xAxisRange();
     const x = this.graph.toDomXCoord(t);
     this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
     this.cursor.hidden = t < low || t > high;
-    for (const series of this.spec.series) series.value.textContent = series.format(series.values[i]);
   }
 
   /// Whether curves are really there: some drawn pixels in the canvas that dygraphs draws them into.

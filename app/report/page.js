@@ -7,7 +7,9 @@ const times = data.samples.t;
 const last = Math.max(0, times.length - 1);
 const clock = timeFormatter(times);
 const mechanism = new Mechanism(find("drawing"), data);
-const charts = times.length > 1 ? chartList(data).map((spec) => new Chart(spec, times, data.events, seekTime)) : [];
+const charts = times.length < 2 ? [] : [
+  ...stripList(data).map((spec) => new Strip(spec, times, seekTime)),
+  ...chartList(data).map((spec) => new Chart(spec, times, data.events, seekTime))];
 
 const state = { index: 0, playing: false, turn: 0, speed: 1, zoom: 1 };
 
@@ -171,7 +173,7 @@ function toPaper() {
   document.documentElement.classList.add("printing");
   for (const chart of charts) {
     chart.restyle({ pixelRatio: 3 });
-    chart.resize(680, 190);
+    chart.resize(680, chart.height);
   }
   redrawMechanism();
 }

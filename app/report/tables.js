@@ -84,7 +84,8 @@ function writeTables(data) {
     ...(data.inputs.length > 0 ? [["Inputs", data.inputs.map(([name, value]) => `${name} = ${format(value)}`).join(", ")]] : []),
     ["Method", run.method], ["Step dt", `${format(run.dt, 9)} s`], ["Steps made", count(run.steps)],
     ["Time reached", `${format(run.t, 9)} s of ${format(run.duration, 9)} s`],
-    ["Baumgarte α, β", `${format(scene.alpha)} 1/s, ${format(scene.beta)} 1/s²`],
+    ...(run.method === "moreau" ? [["θ", format(run.theta)]] : []),
+    run.stabilise === "projection" ? ["Stabilised by", "projection"] : ["Baumgarte α, β", `${format(scene.alpha)} 1/s, ${format(scene.beta)} 1/s²`],
     ["Time a step", run.ns_per_step > 0 ? duration(run.ns_per_step) : "–"],
     ["slideway", data.version],
   ];

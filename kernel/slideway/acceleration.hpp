@@ -1,10 +1,7 @@
-// Accelerations and all forces of one instant, and the check that they satisfy the equations.
-//
-// The check does not reuse M, its factor or the rows: it adds up forces and moments body by body (Newton and Euler) and
-// measures the accelerations of the contact points. What the driven coordinates then lack is the drives' force.
+// Accelerations and all forces of one instant, or of the mean over a step: modes, contact forces, and what follows.
 #pragma once
 
-#include <slideway/friction.hpp>
+#include <slideway/self_check.hpp>
 
 namespace slideway {
 
@@ -13,266 +10,6 @@ struct Solving {
   Gains gains;       ///< Baumgarte's; a stepper starts with its scene's
   HlcpOptions hlcp;  ///< what to do with several solutions, and how long to search
 };
-
-template <class Size>
-struct Work {
-  Kinematics<Size> kinematics;
-  Dynamics<Size> dynamics;
-  Friction<Size> friction;
-  double prescribed[at_least_one(Size::coordinates)];
-  double u[at_least_one(Size::coordinates)];  ///< G q''
-  double scale;  ///< sum of the lengths of all terms of u: the rounding scale of its entries
-  double pi[Friction<Size>::n_ideal];
-};
-
-/// What a guide does to its slider, gathered at the first contact: lambda_0 + lambda_1 along n, friction along t, and
-/// the couple along lambda_1 - across friction_1.
-struct GuideForce {
-  double normal, friction, couple;
-};
-
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE GuideForce guide_force(const Source& source, const Friction<Size>& fr, const Reaction<Size>& r,
-                                       int g) noexcept {
-  const int c = source.tables.first_contact[g];
-  const double sigma = source.tables.is_rough[g] ? fr.sigma[g] : 0;
-  const double size = std::fabs(r.lambda[c]);
-  if (source.scene.guide[g].contacts == 1) return {r.lambda[c], sigma * size, 0};
-  const double size_1 = std::fabs(r.lambda[c + 1]);
-  return {r.lambda[c] + r.lambda[c + 1], sigma * (size + size_1),
-          fr.sliding[g].along * r.lambda[c + 1] - fr.sliding[g].across * (sigma * size_1)};
-}
-
-/// u, its rounding scale and pi from the contact forces.  [friction.hpp]
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work<Size>& w) noexcept {
-  const auto& table = source.tables;
-  const Friction<Size>& fr = w.friction;
-  w.scale = 0;
-  for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
-    w.u[f] = fr.free_motion[f];
-    w.scale += std::fabs(fr.free_motion[f]);
-  });
-  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-    if (!table.is_rough[g]) return;
-    const Link<Size>& link = table.guide[g];
-    const GuideForce force = guide_force(source, fr, r, g);
-    const bool two = source.scene.guide[g].contacts == 2;
-    for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
-      const int f = link.fill[e];
-      const double tangential = fr.T[g][f] * force.friction;
-      w.u[f] += fr.N[g][f] * force.normal + tangential;
-      if (two) w.u[f] += fr.E[g][f] * force.couple;
-      w.scale += std::fabs(tangential);
-    });
-    for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
-      const int c = table.first_contact[g] + i;
-      w.scale += fr.norm[table.row_of[c]] * std::fabs(r.lambda[c]);
-    });
-  });
-  if (table.ideal == 0) return;
-  constexpr int capacity = Friction<Size>::ideal;
-  for_each<Source, capacity>(table.ideal,
-                             [&](int i) SLIDEWAY_FOLD { w.pi[i] = fr.e[i] - inner(source, fr.Q[i], w.u); });
-  for_each<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD { add_scaled(source, w.pi[i], fr.Q[i], w.u); });
-  for_each_down<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD {
-    w.pi[i] /= fr.R[i][i];
-    for_each<Source, capacity>(i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
-    w.scale += fr.ideal_norm[i] * std::fabs(w.pi[i]);
-  });
-}
-
-/// Is anything known of u? Its terms, of which contact forces are parts, carry roundings of eps times their lengths'
-/// sum. Where forces cancel so far that not 20 bits (1e-6) are left beside the motion with and without them, the
-/// constraints have lost rank and the forces are rounding errors over rounding errors.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE bool resolved(const Source& source, const Work<Size>& w) noexcept {
-  double left = 0;
-  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD {
-    left += std::fabs(w.u[f]) + std::fabs(w.friction.free_motion[f]);
-  });
-  return !(w.scale * (detail::epsilon * 0x1p20) > left);  // what is not finite is for the self-check to refuse
-}
-
-/// Friction of all guides into the reaction; false when it does not oppose the slip.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE bool rub(const Source& source, const Friction<Size>& fr, Reaction<Size>& r) noexcept {
-  bool opposes = true;
-  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-    r.friction[g] = guide_force(source, fr, r, g).friction;
-    opposes = opposes && r.friction[g] * r.slip[g] <= 0;
-  });
-  return opposes;
-}
-
-/// A body's share of the check: what the free accelerations and the constraint forces give it.
-template <class Size>
-struct Balance {
-  static constexpr int n_bodies = at_least_one(Size::bodies);
-  double alpha[n_bodies];  ///< by the free coordinates
-  Vec2 a[n_bodies];
-  Wrench wrench[n_bodies];
-};
-
-/// Accelerations that the free q'' add to each body, and the inertia forces against them. Linear in the bodies.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void add_free_motion(const Source& source, const Work<Size>& w, const double* qdd,
-                                     Balance<Size>& balance) noexcept {
-  const auto& scene = source.scene;
-  const auto& table = source.tables;
-  const Kinematics<Size>& k = w.kinematics;
-  for_each<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD {
-    const Body& body = scene.body[i];
-    const int p = body.parent, j = table.first[i];
-    const bool planar = body.joint == Joint::planar, slides = planar || body.joint == Joint::prismatic;
-    const bool turns = planar || body.joint == Joint::revolute;
-    const int turn_j = planar ? j + 2 : j;
-    const bool carried_round = p != ground && table.freely_turning[p];
-    const bool free_turn = turns && table.free_of[turn_j] != none;
-    balance.alpha[i] = !free_turn      ? (carried_round ? balance.alpha[p] : 0)
-                       : carried_round ? balance.alpha[p] + qdd[turn_j]
-                                       : qdd[turn_j];
-    Sum a;
-    if (p != ground && table.freely_moving[p]) a.add(balance.a[p]);
-    if (carried_round && (slides || table.at[i].any())) a.add(balance.alpha[p] * perp(k.arm[i]));
-    if (slides && table.free_of[j] != none) a.add(qdd[j] * axis(k.frame[i], Motion::slide_x));
-    if (planar && table.free_of[j + 1] != none) a.add(qdd[j + 1] * axis(k.frame[i], Motion::slide_y));
-    balance.a[i] = a.value;
-
-    const bool off = table.com[i].any();
-    Sum force;
-    double moment = 0;
-    if (table.freely_turning[i]) {
-      moment = -table.origin_inertia[i] * balance.alpha[i];
-      if (off) force.add(-balance.alpha[i] * perp(w.dynamics.own_moment[i]));
-    }
-    if (table.freely_moving[i]) {
-      force.add(-body.mass * balance.a[i]);
-      if (off) moment -= cross(w.dynamics.own_moment[i], balance.a[i]);
-    }
-    balance.wrench[i] = {force.value, moment};
-  });
-}
-
-/// Acceleration that the free q'' give to the point of body i at rho.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE Vec2 free_acceleration(const Source& source, const Balance<Size>& balance, int i, Vec2 rho) noexcept {
-  if (i == ground) return {};
-  Sum a;
-  if (source.tables.freely_moving[i]) a.add(balance.a[i]);
-  if (source.tables.freely_turning[i]) a.add(balance.alpha[i] * perp(rho));
-  return a.value;
-}
-
-template <class Size>
-SLIDEWAY_INLINE void push(Balance<Size>& balance, int i, Vec2 rho, Vec2 force, double couple,
-                          bool has_couple) noexcept {
-  if (i == ground) return;
-  balance.wrench[i].force = balance.wrench[i].force + force;
-  balance.wrench[i].moment += has_couple ? cross(rho, force) + couple : cross(rho, force);
-}
-
-/// Smallest normal number: keeps the quotient of a vanishing residual by a vanishing scale at zero.
-inline constexpr double tiny = 0x1p-1022;
-
-/// Guide g in the self-check: its forces onto the slider and the rail, its power, and the residual of its rows over
-/// their rounding scale.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& fr, double scale, int g,
-                                   Reaction<Size>& r, Balance<Size>& balance) noexcept {
-  const auto& table = source.tables;
-  const Guide& guide = source.scene.guide[g];
-  const Sliding& s = fr.sliding[g];
-  const int c = table.first_contact[g], rail = guide.rail, slider = guide.slider;
-  const bool two = guide.contacts == 2, rough = table.is_rough[g];
-  const GuideForce of_guide = guide_force(source, fr, r, g);
-  const Vec2 normal = of_guide.normal * s.n, force = rough ? normal + of_guide.friction * s.t : normal;
-  push(balance, slider, s.on_slider, force, of_guide.couple, two);
-  push(balance, rail, s.on_rail, {-force.x, -force.y}, -of_guide.couple, two);
-
-  Vec2 relative = free_acceleration(source, balance, slider, s.on_slider);
-  if (rail != ground) relative = relative - free_acceleration(source, balance, rail, s.on_rail);
-  const double accelerated = dot(s.n, relative);
-  const int m = table.row_of[c];
-  const double* norm = rough ? fr.norm : fr.ideal_norm;
-  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + norm[m] * scale + tiny);
-  r.power.dissipated -= of_guide.friction * s.slip[0];
-  r.power.constraint_work += r.lambda[c] * s.Phi_rate[0];
-  if (two) {
-    const double turning = rail == ground ? balance.alpha[slider] : balance.alpha[slider] - balance.alpha[rail];
-    residual += std::fabs(accelerated + s.along * turning - fr.target[c + 1]) /
-                (std::fabs(fr.target[c + 1]) + norm[m + 1] * scale + tiny);
-    const double friction_1 = rough ? fr.sigma[g] * std::fabs(r.lambda[c + 1]) : 0;
-    r.power.dissipated -= friction_1 * (s.slip[1] - s.slip[0]);
-    r.power.constraint_work += r.lambda[c + 1] * s.Phi_rate[1];
-  }
-  return residual;
-}
-
-/// The self-check: sum over all equations of |residual| / (rounding scale). Fills in the drives' forces and the power.
-///
-/// Rounding scales, from u = G q'' (friction.hpp): u is a sum of terms with `scale` the sum of their lengths, so it
-/// carries a few eps of that; G maps an error du to one of at most sqrt(M_jj) |du| in row j of the equations of motion
-/// (Cauchy and Schwarz with M = G'G), and a row N~ to one of at most |N~| |du|. So rows j are measured in
-/// sqrt(M_jj) scale, rows of contacts and pins in |c| + |N~| scale. A sum, not a maximum: it passes NaN on.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double check(const Source& source, const double* v, Work<Size>& w, Reaction<Size>& r) noexcept {
-  const auto& scene = source.scene;
-  const auto& table = source.tables;
-  const Kinematics<Size>& k = w.kinematics;
-  const Friction<Size>& fr = w.friction;
-  Balance<Size> balance;
-  add_free_motion(source, w, r.acceleration, balance);
-  const double scale = w.scale;
-  double residual = 0;
-  r.power = {w.dynamics.applied_power, w.dynamics.damper_power, 0};
-
-  for_each<Source, Size::guides>(
-      scene.guides, [&](int g) SLIDEWAY_FOLD { residual += check_guide(source, fr, scale, g, r, balance); });
-  for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD {
-    const Pin& pin = scene.pin[p];
-    const Meeting& at = fr.meeting[p];
-    push(balance, pin.a, at.on_a, r.pin[p], 0, false);
-    push(balance, pin.b, at.on_b, {-r.pin[p].x, -r.pin[p].y}, 0, false);
-    const Vec2 left = free_acceleration(source, balance, pin.a, at.on_a) -
-                      free_acceleration(source, balance, pin.b, at.on_b) -
-                      Vec2{fr.ideal_target[2 * p], fr.ideal_target[2 * p + 1]};
-    residual += std::fabs(left.x) / (std::fabs(fr.ideal_target[2 * p]) + fr.ideal_norm[2 * p] * scale + tiny);
-    residual += std::fabs(left.y) / (std::fabs(fr.ideal_target[2 * p + 1]) + fr.ideal_norm[2 * p + 1] * scale + tiny);
-    r.power.constraint_work += dot(r.pin[p], at.rate);
-  });
-
-  for_each_down<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD {
-    const int p = scene.body[i].parent;
-    if (p == ground) return;
-    balance.wrench[p].force = balance.wrench[p].force + balance.wrench[i].force;
-    balance.wrench[p].moment += balance.wrench[i].moment + cross(k.arm[i], balance.wrench[i].force);
-  });
-  const double inverse_scale = 1 / (scale + tiny);
-  for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
-    const int i = table.body_of[j];
-    const double left = w.dynamics.h[j] + along(table.motion[j], k.frame[i], balance.wrench[i]);
-    if (table.free_of[j] != none) {
-      residual += std::fabs(left) * inverse_scale / std::sqrt(w.dynamics.diagonal[table.free_of[j]]);
-    } else {
-      r.drive[table.drive_of[j]] = -left;
-      r.power.work -= left * v[j];
-    }
-  });
-  const double power = r.power.work + r.power.dissipated + r.power.constraint_work;
-  residual += power - power;  // 0, or NaN where a force or its power is not finite
-  return residual;
-}
-
-/// Largest sum of the self-check. Each of at most `items` equations takes one rounding (a product or a sum, half an eps
-/// each) for each of at most `items` terms on the way to u, as many through G and back, as many in the rows, and as
-/// many in the check itself: four halves of an eps, items squared times. Dimensionless.
-template <class Source>
-constexpr double residual_bound(const Source& source) noexcept {
-  const auto& table = source.tables;
-  const double items = table.coordinates + table.contacts + table.ideal + source.scene.bodies;
-  return 2 * detail::epsilon * items * items;
-}
 
 /// The weaker of two statements about uniqueness.
 constexpr Uniqueness weaker(Uniqueness a, Uniqueness b) noexcept { return a > b ? a : b; }
@@ -295,70 +32,260 @@ SLIDEWAY_INLINE bool at_rest(const Source& source, const Work<Size>& w, int g, c
   return std::fabs(slip) <= 4 * detail::epsilon * (link.columns + 1) * terms;
 }
 
-/// A guide with friction whose slip direction is not known.
-template <class Source>
-SLIDEWAY_INLINE int undecided_guide(const Source& source, const signed char* mode) noexcept {
-  int found = none;
-  for_each<Source, Source::Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-    if (source.tables.is_rough[g] && mode[g] == 0 && found == none) found = g;
+/// What an evaluation is for.
+enum class Aim : unsigned char {
+  decide,  ///< modes and signs are found: an HLCP; the set-valued law where guides are at rest
+  follow,  ///< modes and signs are kept, right or wrong: one linear solve
+  impulse  ///< means over a step to come: rates at its end are prescribed, and every guide is set-valued in them
+};
+
+/// Where and how an evaluation is made.
+template <class Size>
+struct Moment {
+  double t, tau;  ///< time; since the step's start, for live inputs
+  const double *q, *v;
+  const Inputs<Size>& inputs;
+  Aim aim;
+  bool at_start;     ///< drift is measured, and a guide whose sliding speed is all rounding counts as at rest
+  double dt = 0;     ///< of the step, for impulses: gains are then {1 / dt, c / dt, 0}
+  double ahead = 0;  ///< from t to the step's end
+};
+
+/// Which rough guides are at rest, and the modes of the others. Returns whether there is one.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool find_rest(const Source& source, const Work<Size>& w, const Moment<Size>& at, Modes<Size>& m,
+                               const Reaction<Size>& r, bool* rests) noexcept {
+  bool any = false;
+  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    rests[g] = false;
+    if (!source.tables.is_rough[g]) return;
+    if (at.aim == Aim::follow) {
+      rests[g] = m.mode[g] == 0;
+    } else if (at.aim == Aim::impulse) {
+      rests[g] = true;
+      m.leaving[g] = m.decided ? m.mode[g] != 0 : !at_rest(source, w, g, at.v, r.slip[g]);
+    } else {
+      const bool still = m.still[g] || (at.at_start && at_rest(source, w, g, at.v, r.slip[g]));
+      rests[g] = still || (m.decided && m.mode[g] == 0);
+      if (!rests[g] && r.slip[g] != 0) m.mode[g] = r.slip[g] > 0 ? 1 : -1;
+    }
+    if (rests[g] && (at.aim == Aim::impulse || !m.decided)) m.mode[g] = 0;
+    any = any || rests[g];
   });
-  return found;
+  return any;
+}
+
+/// For impulses: the mean acceleration that brings each driven coordinate's speed to its law's at the step's end, but
+/// for -(beta / alpha) phi.
+template <class Source, class Size = typename Source::Size>
+void prescribe_means(const Source& source, const Moment<Size>& at, const Solving& solving, Work<Size>& w,
+                     Reaction<Size>& r) noexcept {
+  for (int d = 0; d < source.scene.drives; ++d) {
+    const Drive& drive = source.scene.drive[d];
+    const int j = source.tables.first[drive.body] + drive.axis;
+    const LawValue now = law_at(drive, at.t, at.inputs.input, at.tau);
+    const LawValue end = law_at(drive, at.t + at.ahead, at.inputs.input, at.tau + at.ahead);
+    const double phi = at.q[j] - now.value;
+    w.prescribed[j] = solving.gains.alpha * (end.rate - at.v[j]) - solving.gains.beta * phi;
+    r.drift_position = larger(r.drift_position, std::fabs(phi));
+    r.drift_velocity = larger(r.drift_velocity, std::fabs(at.v[j] - now.rate));
+  }
+}
+
+/// Prescribed accelerations, kinematics and contacts.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void place(const Source& source, const Moment<Size>& at, const Solving& solving, Work<Size>& w,
+                           Reaction<Size>& r) noexcept {
+  r.t = at.t;
+  r.drift_position = r.drift_velocity = 0;
+  if (at.aim == Aim::impulse) {
+    prescribe_means(source, at, solving, w, r);
+  } else {
+    prescribe(source, at.q, at.v, at.t, at.inputs, at.tau, solving.gains, w.prescribed, r.drift_position,
+              r.drift_velocity);
+  }
+  kinematics(source, at.q, at.v, w.prescribed, w.kinematics);
+  place_contacts(source, w.kinematics, solving.gains, at.at_start, w.friction, r);
+}
+
+/// For impulses: kinematics and contacts again, with the drives' speeds as they are to be at the step's end and the
+/// others as before, so that rates of constraints at the end are these plus dt times what the mean accelerations add.
+template <class Source, class Size = typename Source::Size>
+[[gnu::noinline]] void place_ahead(const Source& source, const Moment<Size>& at, const Solving& solving, Work<Size>& w,
+                                   Reaction<Size>& r) noexcept {
+  double v[at_least_one(Size::coordinates)];
+  for (int j = 0; j < source.tables.coordinates; ++j) {
+    v[j] = source.tables.free_of[j] != none ? at.v[j] : at.v[j] + at.dt * w.prescribed[j];
+  }
+  kinematics(source, at.q, v, w.prescribed, w.kinematics);
+  place_contacts(source, w.kinematics, solving.gains, false, w.friction, r);
+}
+
+/// For impulses: rates and powers at the step's end, where friction opposes the slip.
+template <class Source, class Size = typename Source::Size>
+[[gnu::noinline]] void place_at_end(const Source& source, const Moment<Size>& at, const Solving& solving, Work<Size>& w,
+                                    Reaction<Size>& r) noexcept {
+  double v[at_least_one(Size::coordinates)];
+  for (int j = 0; j < source.tables.coordinates; ++j) v[j] = at.v[j] + at.dt * r.acceleration[j];
+  kinematics(source, at.q, v, w.prescribed, w.kinematics);
+  place_contacts(source, w.kinematics, solving.gains, false, w.friction, r);
+  for (int p = 0; p < source.scene.pins; ++p) meeting(source, w.kinematics, p, w.friction.meeting[p]);
+  apply_forces(source, w.kinematics, at.inputs, at.tau, w.dynamics);
+  for (int s = 0; s < source.scene.joint_springs; ++s) {
+    const JointSpring& spring = source.scene.joint_spring[s];
+    const double rate = v[source.tables.first[spring.body]];
+    w.dynamics.damper_power += spring.damping * rate * rate;
+  }
+  measure_power(source, v, w, r);
+}
+
+/// The guides at rest: their modes if they are to be decided, all contact forces and stiction.
+template <class Source, class Size = typename Source::Size>
+[[gnu::noinline]] Status hold(const Source& source, const Moment<Size>& at, const Solving& solving, const bool* rests,
+                              Work<Size>& w, Problem<Size>& hlcp, Modes<Size>& m, Reaction<Size>& r,
+                              Report& report) noexcept {
+  const auto& table = source.tables;
+  Friction<Size>& fr = w.friction;
+  for (int g = 0; g < source.scene.guides; ++g) {  // the sliding problem leaves alone what a row does not reach
+    if (!table.is_rough[g]) continue;
+    for (int f = 0; f < table.free; ++f) {
+      if (!table.guide[g].filled[f]) fr.N[g][f] = fr.T[g][f] = fr.E[g][f] = 0;
+    }
+  }
+  RestProblem<Source> problem(source, solving.hlcp, fr, hlcp);
+  double slack = 0;
+  for (int g = 0; g < source.scene.guides; ++g) {
+    if (!rests[g]) continue;
+    const Guide& guide = source.scene.guide[g];
+    const double gamma = solving.gains.known * sliding_gamma(source, w.kinematics, g, fr.sliding[g]);
+    const bool kinetic = m.mode[g] != 0 || m.leaving[g];
+    problem.add(g, -gamma - solving.gains.alpha * r.slip[g], kinetic ? guide.mu : guide.mu_static);
+    slack = larger(slack, solving.gains.alpha * std::fabs(r.slip[g]));
+  }
+  problem.allow(4 * slack);
+  if (at.aim != Aim::follow) {
+    const Status status = problem.decide(m, report);
+    for (int g = source.scene.guides - 1; g >= 0; --g) {
+      if (rests[g] && (status != Status::ok || report.uniqueness == Uniqueness::refuted)) report.guide = g;
+    }
+    if (status != Status::ok) {
+      return independent_contacts(hlcp, table.rough) ? status : Status::singular_constraints;
+    }
+  }
+  if (!problem.solve_in_mode(m, r.lambda)) return Status::singular_constraints;
+  for (int c = 0; c < table.contacts; ++c) fr.face[c] = m.sign[c] < 0 ? -1 : 1;
+  double largest = 0;
+  for (int c = 0; c < table.contacts; ++c) {
+    if (table.is_rough[table.guide_of[c]]) largest = larger(largest, std::fabs(r.lambda[c]));
+  }
+  bool within = true;
+  for (int g = 0; g < source.scene.guides; ++g) {
+    if (!rests[g] || m.mode[g] != 0) continue;
+    m.limit_left[g] = problem.limit_left(g, r.lambda);
+    // 2^-40: some thousand roundings of the largest force.
+    within = within && m.limit_left[g] >= -0x1p-40 * (largest + std::fabs(fr.stiction[g]));
+  }
+  return within || at.aim == Aim::follow ? Status::ok : Status::inaccurate;
+}
+
+/// The guide to name where friction leaves no or several answers: the first without whose friction there is one; else
+/// the first with friction. Cost: an HLCP a guide, of a step that is refused or goes on along the signs.
+template <class Source, class Size = typename Source::Size>
+[[gnu::noinline, gnu::cold]] int guide_to_blame(const Source& source, const Problem<Size>& hlcp) noexcept {
+  const auto& table = source.tables;
+  int blamed = none;
+  for (int g = 0; g < source.scene.guides && blamed == none; ++g) {
+    if (!table.is_rough[g]) continue;
+    Problem<Size> without = hlcp;
+    for (int i = 0; i < table.rough; ++i) {
+      for (int k = 0; k < source.scene.guide[g].contacts; ++k) {
+        const int j = table.row_of[table.first_contact[g]] + k;
+        without.plus[i][j] = without.minus[i][j] = 0.5 * (hlcp.plus[i][j] + hlcp.minus[i][j]);
+      }
+    }
+    HlcpSolution<at_least_one(Size::contacts)> answer = {};
+    solve(without, static_cast<int>(table.rough), answer);
+    if (answer.status == Status::ok) blamed = g;
+  }
+  for (int g = source.scene.guides - 1; g >= 0 && blamed == none; --g) {
+    if (table.is_rough[g]) blamed = g;
+  }
+  return blamed;
+}
+
+/// The contact forces where all guides slip.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE Status press(const Source& source, Aim aim, const Solving& solving, Problem<Size>& hlcp, Modes<Size>& m,
+                             Friction<Size>& fr, Reaction<Size>& r, Report& report) noexcept {
+  const auto& table = source.tables;
+  HlcpSolution<at_least_one(Size::contacts)> answer;
+  for_each<Source, Size::contacts>(table.rough,
+                                   [&](int i) SLIDEWAY_FOLD { answer.sign[i] = m.sign[table.rough_contact[i]]; });
+  const auto count = [&] {
+    if constexpr (Source::folds) {
+      return std::integral_constant<int, Source::tables.rough>{};
+    } else {
+      return static_cast<int>(table.rough);
+    }
+  }();
+  if (aim == Aim::follow) {
+    if (!solve_with_signs(hlcp, count, answer.sign, answer.x)) return Status::singular_constraints;
+  } else {
+    solve(hlcp, count, answer, solving.hlcp);
+    report.solves = report.solves > answer.solves ? report.solves : answer.solves;
+    report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
+    if (answer.uniqueness == Uniqueness::refuted || answer.status == Status::no_solution) {
+      if (report.guide == none) report.guide = guide_to_blame(source, hlcp);
+    }
+    if (answer.status != Status::ok) {
+      return independent_contacts(hlcp, table.rough) ? answer.status : Status::singular_constraints;
+    }
+  }
+  for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
+    const int c = table.rough_contact[i];
+    r.lambda[c] = answer.x[i];
+    m.sign[c] = answer.sign[i];
+    fr.face[c] = answer.sign[i] < 0 ? -1 : 1;
+  });
+  return Status::ok;
 }
 
 /// q'', contact forces, friction, pin and drive forces at (t, q, v), checked (WWZ14 (10)-(19)).
 ///
-/// mode, in and out: slip direction per guide; replaced by the sign of the sliding speed where that is not zero.
-/// sign, in and out: of each contact force; the solver's first guess, then the answer's.
-/// tau is the time since the step's start, for live inputs. at_start: drift is measured, and a guide whose sliding
-/// speed is all rounding counts as at rest. r is valid only when the status is ok. `report` keeps the extremes of all
-/// calls. Cost: one HLCP and O(bodies + contacts^2).
+/// m, in and out: modes and contact signs, first guesses and then the answer's, unless they are to be followed. r is
+/// valid only when the status is ok. `report` keeps the extremes of all calls. Cost: one HLCP (follow: one linear
+/// solve) and O(bodies + contacts^2); with guides at rest, up to 2 guides + 2 larger HLCPs.
 template <class Source, class Size = typename Source::Size>
-Status accelerate(const Source& source, double t, double tau, const double* __restrict q, const double* __restrict v,
-                  const Inputs<Size>& inputs, const Solving& solving, bool at_start, signed char* __restrict mode,
-                  signed char* __restrict sign, Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
+Status accelerate(const Source& source, const Moment<Size>& at, const Solving& solving, Modes<Size>& m,
+                  Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
   Work<Size> w;
   // Apart from `w`: what a call that is not inlined may see is not kept in registers.
   Problem<Size> hlcp;
-  HlcpSolution<at_least_one(Size::contacts)> answer;
-  r.t = t;
-  r.drift_position = r.drift_velocity = 0;
-  prescribe(source, q, v, t, inputs, tau, solving.gains, w.prescribed, r.drift_position, r.drift_velocity);
-  kinematics(source, q, v, w.prescribed, w.kinematics);
-  place_contacts(source, w.kinematics, solving.gains, at_start, w.friction, r);
-  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
-    if (r.slip[g] > 0) mode[g] = 1;
-    if (r.slip[g] < 0) mode[g] = -1;
-    if (at_start && at_rest(source, w, g, v, r.slip[g])) mode[g] = 0;
-  });
-  report.guide = undecided_guide(source, mode);
-  if (report.guide != none) return Status::invalid_input;
-
-  apply_forces(source, w.kinematics, inputs, tau, w.dynamics);
+  ++report.evaluations;
+  place(source, at, solving, w, r);
+  bool rests[at_least_one(Size::guides)];
+  const bool any_rests = find_rest(source, w, at, m, r, rests);
+  signed char slips[at_least_one(Size::guides)];
+  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD { slips[g] = rests[g] ? 0 : m.mode[g]; });
+  apply_forces(source, w.kinematics, at.inputs, at.tau, w.dynamics);
+  apply_steady_friction(source, slips, w.friction, w.dynamics);
   gather(source, w.kinematics, w.dynamics);
-  if (!factor_mass(source, w.kinematics, q, v, w.dynamics)) return Status::singular_constraints;
-  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r, hlcp)) {
+  if (!factor_mass(source, w.kinematics, at.q, at.v, w.dynamics)) return Status::singular_constraints;
+  if (at.aim == Aim::impulse) place_ahead(source, at, solving, w, r);
+  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, slips, w.friction, r, hlcp)) {
     return Status::singular_constraints;
   }
 
-  if (table.rough > 0) {
-    for_each<Source, Size::contacts>(table.rough,
-                                     [&](int m) SLIDEWAY_FOLD { answer.sign[m] = sign[table.rough_contact[m]]; });
-    if constexpr (Source::folds) {
-      solve(hlcp, std::integral_constant<int, Source::tables.rough>{}, answer, solving.hlcp);
-    } else {
-      solve(hlcp, static_cast<int>(table.rough), answer, solving.hlcp);
-    }
-    report.solves = report.solves > answer.solves ? report.solves : answer.solves;
-    report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
-    if (answer.status != Status::ok) {
-      return independent_contacts(hlcp, table.rough) ? answer.status : Status::singular_constraints;
-    }
-    for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
-      r.lambda[table.rough_contact[m]] = answer.x[m];
-      sign[table.rough_contact[m]] = answer.sign[m];
-    });
+  signed char signs[at_least_one(Size::contacts)];
+  for_each<Source, Size::contacts>(table.rough,
+                                   [&](int i) SLIDEWAY_FOLD { signs[i] = m.sign[table.rough_contact[i]]; });
+  const bool any_rough = table.rough > 0;  // known to the compiler, for a scene that is
+  if (any_rough) {
+    const Status status = any_rests ? hold(source, at, solving, rests, w, hlcp, m, r, report)
+                                    : press(source, at.aim, solving, hlcp, m, w.friction, r, report);
+    if (status != Status::ok) return status;
   }
   resolve(source, r, w);
   for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD {
@@ -366,15 +293,30 @@ Status accelerate(const Source& source, double t, double tau, const double* __re
   });
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD { r.pin[p] = {w.pi[2 * p], w.pi[2 * p + 1]}; });
   if (!resolved(source, w)) return Status::singular_constraints;
+  for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
+    const int c = table.rough_contact[i], g = table.guide_of[c];
+    m.noise[c] = rank_bound(source) * w.scale / w.friction.norm[i];
+    if (m.decided && std::fabs(r.lambda[c]) <= m.noise[c]) m.sign[c] = signs[i];  // rounding has no face of its own
+    if (c == table.first_contact[g]) m.motion_noise[g] = rank_bound(source) * w.scale * w.friction.norm[i];
+  });
   from_metric(source, w.dynamics, w.u);
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
     r.acceleration[j] = table.free_of[j] != none ? w.u[table.free_of[j]] : w.prescribed[j];
   });
 
-  const bool opposes = rub(source, w.friction, r);
-  const double residual = check(source, v, w, r);
+  for_each<Source, Size::guides>(scene.guides,
+                                 [&](int g) SLIDEWAY_FOLD { w.friction.held[g] = rests[g] && m.mode[g] == 0; });
+  const bool opposes = rub(source, w.friction, rests, r) || at.aim == Aim::follow;
+  double residual = check(source, w, r);
+  if (at.aim == Aim::impulse) {
+    place_at_end(source, at, solving, w, r);
+  } else {
+    measure_power(source, at.v, w, r);
+  }
+  const double power = r.power.work + r.power.dissipated + r.power.constraint_work;
+  residual += power - power;  // 0, or NaN where a force or its power is not finite
   report.residual = residual > report.residual ? residual : report.residual;
-  if (at_start) {
+  if (at.at_start) {
     report.drift_position = r.drift_position;
     report.drift_velocity = r.drift_velocity;
   }

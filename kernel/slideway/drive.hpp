@@ -38,6 +38,7 @@ SLIDEWAY_INLINE LawValue law_at(const Drive& drive, double t, const Input* input
 /// The gains of Phi'' + alpha Phi' + beta Phi = 0 (WWZ14 (11), (12)), 1/s and 1/s^2.
 struct Gains {
   double alpha = 20, beta = 100;
+  double known = 1;  ///< factor on what Phi'' is without the free q''; 0 where rates are prescribed instead: step.hpp
 };
 
 /// What every driven coordinate is to do: prescribed[j] = f'' - alpha (q' - f') - beta (q - f), so that

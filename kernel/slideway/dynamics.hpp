@@ -21,7 +21,7 @@ struct Dynamics {
   Vec2 own_moment[n_bodies];  ///< mass times (com - origin) of the body alone, world's frame, kg m
   Vec2 moment[n_bodies];      ///< the same of the body and all it carries
   double inertia[n_bodies];   ///< of the body and all it carries, about its origin, kg m^2
-  Wrench applied[n_bodies];   ///< springs and loads
+  Wrench applied[n_bodies];   ///< springs, loads and steady friction (friction.hpp)
   Wrench known[n_bodies];     ///< applied, gravity and -(inertia of the known accelerations); with all carried
   double h[n_coordinates];    ///< known force on each coordinate, driven ones too
   double M[n_coordinates][n_coordinates];  ///< free coordinates, lower triangle; then G
@@ -40,7 +40,7 @@ SLIDEWAY_INLINE void apply_forces(const Source& source, const Kinematics<Size>& 
     d.applied[i].moment += cross(rho, force);
   };
   d.applied_power = d.damper_power = 0;
-  if (scene.springs + scene.loads > 0) {
+  if (scene.springs + scene.loads + source.tables.steady > 0) {
     for_each<Source, Size::bodies>(scene.bodies, [&](int i) SLIDEWAY_FOLD { d.applied[i] = {}; });
   }
   for_each<Source, Size::springs>(scene.springs, [&](int s) SLIDEWAY_FOLD {

@@ -2,9 +2,10 @@
 // frictionless contacts eliminated, and the HLCP  S lambda + S* |lambda| = b  of the rough contacts (WWZ14 (13)-(19)).
 //
 // With u = G q'' (dynamics.hpp), rows N~ = N G^-1 and so on, the dynamics read
-//   u = h~ + N~' lambda + T~' F + P~' pi,   P~ u = c_P (ideal rows),   N~ u = c_N,   F = sigma |lambda|,
-// sigma = -mu sgn(slip). Gram and Schmidt give P~ = R Q with orthonormal rows Q; with N^ = N~ (I - Q'Q) and
-// u0 = h~ + Q'(e - Q h~), R e = c_P, the unknowns pi drop out:
+//   u = h~ + N~' lambda + T~' F + P~' pi,   P~ u = c_P (ideal rows),   N~ u = c_N,   F = sigma |lambda| + F_0,
+// sigma = -mu sgn(slip) where the guide slips. Viscous and preload friction of a guide that slips are in h; F_0 is
+// friction at rest, an unknown of rest.hpp. Gram and Schmidt give P~ = R Q with orthonormal rows Q; with N^ = N~ (I -
+// Q'Q) and u0 = h~ + Q'(e - Q h~), R e = c_P, the unknowns pi drop out:
 //   S = N^ N^',  S*_ij = sigma_j N^_i . T~_j,  b = c_N - N~ u0.
 // The rows of a guide's two contacts differ by the slider's turning against the rail, E: three rows serve for four.
 // No inverse and no Schur complement is formed, so a mass ratio costs no digits beyond those of the rows themselves.
@@ -28,7 +29,11 @@ struct Friction {
   double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used when there are any
   double E_clear[n_guides][n_free];
   double norm[n_contacts];     ///< |N~| of each rough contact
-  double sigma[n_guides];      ///< friction per |lambda|, along the guide
+  double sigma[n_guides];      ///< friction per |lambda|, along the guide; 0 at rest
+  double stiction[n_guides];   ///< F_0, at the first contact, N
+  double steady[n_guides];     ///< viscous and preload friction while slipping, at the first contact, N; in h
+  bool held[n_guides];         ///< at rest: friction is a constraint's force
+  double face[n_contacts];     ///< +1, -1: the face that carries, so that |lambda| = face lambda
   double free_motion[n_free];  ///< h~
   double u0[n_free];
   double Q[n_ideal][n_free], R[n_ideal][n_ideal], e[n_ideal];
@@ -124,8 +129,8 @@ SLIDEWAY_INLINE bool eliminate_ideal(const Source& source, const Kinematics<Size
     meeting(source, k, p, at);
     metric_row(source, k, d, table.pin[p], at.place, {1, 0}, fr.Q[2 * p]);
     metric_row(source, k, d, table.pin[p], at.place, {0, 1}, fr.Q[2 * p + 1]);
-    const Vec2 target = {-at.gamma.x - gains.alpha * at.rate.x - gains.beta * at.Phi.x,
-                         -at.gamma.y - gains.alpha * at.rate.y - gains.beta * at.Phi.y};
+    const Vec2 target = {-gains.known * at.gamma.x - gains.alpha * at.rate.x - gains.beta * at.Phi.x,
+                         -gains.known * at.gamma.y - gains.alpha * at.rate.y - gains.beta * at.Phi.y};
     fr.e[2 * p] = fr.ideal_target[2 * p] = target.x;
     fr.e[2 * p + 1] = fr.ideal_target[2 * p + 1] = target.y;
     r.drift_position = larger(r.drift_position, larger(std::fabs(at.Phi.x), std::fabs(at.Phi.y)));
@@ -177,11 +182,31 @@ SLIDEWAY_INLINE void place_contacts(const Source& source, const Kinematics<Size>
     sliding(source, k, g, s);
     r.slip[g] = s.slip[0];
     for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
-      fr.target[table.first_contact[g] + i] = -s.gamma[i] - gains.alpha * s.Phi_rate[i] - gains.beta * s.Phi[i];
+      fr.target[table.first_contact[g] + i] =
+          -gains.known * s.gamma[i] - gains.alpha * s.Phi_rate[i] - gains.beta * s.Phi[i];
       if (!measure) return;
       r.drift_position = larger(r.drift_position, std::fabs(s.Phi[i]));
       r.drift_velocity = larger(r.drift_velocity, std::fabs(s.Phi_rate[i]));
     });
+  });
+}
+
+/// Viscous and preload friction, -viscous v - preload sgn(v), as wrenches on the bodies. At rest the preload is part of
+/// what holds the guide, and not among them.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE void apply_steady_friction(const Source& source, const signed char* mode, Friction<Size>& fr,
+                                           Dynamics<Size>& d) noexcept {
+  for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+    if (!source.tables.is_steady[g]) return;
+    const Guide& guide = source.scene.guide[g];
+    const Sliding& s = fr.sliding[g];
+    fr.steady[g] = -guide.viscous * s.slip[0] - mode[g] * guide.preload;
+    const Vec2 force = fr.steady[g] * s.t;
+    d.applied[guide.slider].force = d.applied[guide.slider].force + force;
+    d.applied[guide.slider].moment += cross(s.on_slider, force);
+    if (guide.rail == ground) return;
+    d.applied[guide.rail].force = d.applied[guide.rail].force - force;
+    d.applied[guide.rail].moment -= cross(s.on_rail, force);
   });
 }
 
@@ -233,7 +258,8 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
-  const bool two = scene.guide[g].contacts == 2, other_two = scene.guide[o].contacts == 2;
+  constexpr bool room = Size::contacts > 1;
+  const bool two = room && scene.guide[g].contacts == 2, other_two = room && scene.guide[o].contacts == 2;
   const bool clear = table.ideal > 0;
   const auto& N = clear ? fr.N_clear[g] : fr.N[g];
   const auto& E = clear ? fr.E_clear[g] : fr.E[g];
@@ -264,7 +290,8 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   }
 }
 
-/// The rows, S, S* and b of the rough contacts, given the slip direction of each guide. False when rank is lost.
+/// The rows, S, S* and b of the rough contacts, given the slip direction of each guide; those at rest bring no friction
+/// here. False when rank is lost.
 /// Cost: guides^2 times the overlap of their paths.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, Gains gains,
@@ -279,7 +306,8 @@ SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, c
   bool independent = table.ideal == 0 || eliminate_ideal(source, k, d, gains, fr, r);
 
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
-    fr.sigma[g] = mode[g] > 0 ? -scene.guide[g].mu : scene.guide[g].mu;
+    fr.sigma[g] = mode[g] > 0 ? -scene.guide[g].mu : mode[g] < 0 ? scene.guide[g].mu : 0;
+    fr.stiction[g] = 0;
     if (table.is_rough[g]) guide_rows(source, k, d, g, fr, hlcp);
   });
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {

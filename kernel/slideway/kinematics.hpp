@@ -227,6 +227,18 @@ SLIDEWAY_INLINE void sliding(const Source& source, const Kinematics<Size>& k, in
   if (rail_known) s.gamma[1] -= k.known_alpha[rail] * s.along;
 }
 
+/// Acceleration of the sliding speed with the free q'' at zero, so that v' = T q'' + this: with w and omega as above,
+/// t' = omega n, and the rail's material point at the contact changes by omega perp w beside its own acceleration:
+/// t . (known acceleration of the slider's point against the rail's) + 2 omega_rail Phi'. m/s^2; constant time.
+template <class Source, class Size = typename Source::Size>
+double sliding_gamma(const Source& source, const Kinematics<Size>& k, int g, const Sliding& s) noexcept {
+  const Guide& guide = source.scene.guide[g];
+  const Vec2 a = point(source, k, guide.slider, s.on_slider, true).known;
+  const Vec2 b = point(source, k, guide.rail, s.on_rail, true).known;
+  const bool rail_turns = guide.rail != ground && source.tables.turning[guide.rail];
+  return dot(s.t, a - b) + (rail_turns ? 2 * k.rate[guide.rail] * s.Phi_rate[0] : 0);
+}
+
 /// The two points of a pin, seen from body b: Phi = r_a - r_b, and with w the velocity of a's point against b's
 /// material point at the same place, Phi'' = (accelerations' difference) - 2 omega_b perp w, as for a guide. So
 /// the pin's forces on a and b act at one place and cancel, drift or not.

@@ -160,7 +160,6 @@ enum class Defect : unsigned char {
   mu_static_below_mu,
   negative_viscous,
   negative_preload,
-  not_modelled_yet,
   no_such_coordinate,
   driven_twice,
   coefficient_count,
@@ -205,8 +204,6 @@ constexpr const char* sentence(Defect defect) noexcept {
       return "needs viscous >= 0";
     case Defect::negative_preload:
       return "needs preload >= 0";
-    case Defect::not_modelled_yet:
-      return "asks for viscous or preload friction, which this version does not model: leave both 0";
     case Defect::no_such_coordinate:
       return "needs a coordinate that the body's joint has";
     case Defect::driven_twice:
@@ -326,7 +323,6 @@ constexpr Findings defects(const Scene<Size>& scene) noexcept {
     found.require(!(guide.mu_static < guide.mu), Item::guide, g, Defect::mu_static_below_mu);
     found.require(!(guide.viscous < 0), Item::guide, g, Defect::negative_viscous);
     found.require(!(guide.preload < 0), Item::guide, g, Defect::negative_preload);
-    found.require(!(guide.viscous > 0) && !(guide.preload > 0), Item::guide, g, Defect::not_modelled_yet);
   }
   for (int d = 0; d < scene.drives; ++d) {
     const Drive& drive = scene.drive[d];

@@ -5,6 +5,35 @@
 
 namespace slideway {
 
+/// What ends a mode.
+enum class EventKind : unsigned char {
+  slip_reversal,   ///< a sliding guide turns back without resting
+  stick,           ///< a sliding guide comes to rest
+  slip,            ///< a guide at rest breaks away
+  normal_reversal  ///< a contact force passes to the other face
+};
+
+constexpr const char* name(EventKind kind) noexcept {
+  switch (kind) {
+    case EventKind::slip_reversal:
+      return "slip_reversal";
+    case EventKind::stick:
+      return "stick";
+    case EventKind::slip:
+      return "slip";
+    case EventKind::normal_reversal:
+      return "normal_reversal";
+  }
+  return "unknown";
+}
+
+struct Event {
+  double t;  ///< s
+  int guide;
+  int contact;  ///< of the guide, 0 or 1; none for what the whole guide does
+  EventKind kind;
+};
+
 /// The whole state of a mechanism: a copy of it replays bit for bit. Plain data.
 template <class Size>
 struct State {
@@ -13,8 +42,10 @@ struct State {
   long long steps = 0;                                  ///< made since `start`
   double q[at_least_one(Size::coordinates)] = {};       ///< body by body; rad | m | m, m, rad
   double v[at_least_one(Size::coordinates)] = {};       ///< q', per second
-  signed char mode[at_least_one(Size::guides)] = {};    ///< +1, -1: the slip direction; 0: rest or not known yet
+  signed char mode[at_least_one(Size::guides)] = {};    ///< +1, -1: the slip direction; 0: at rest
   signed char sign[at_least_one(Size::contacts)] = {};  ///< of each contact force, guide by guide
+  bool decided = false;  ///< mode and sign hold. False, as at the start and after q or v were set by hand: the next
+                         ///< step finds them, and takes a guide to be at rest if its sliding speed is zero to rounding
 
   /// start + steps dt: a product, because a sum of a million steps would drift by 1e-6 s.
   constexpr double time() const noexcept { return start + static_cast<double>(steps) * dt; }
@@ -22,7 +53,7 @@ struct State {
 
 template <class Size>
 constexpr bool operator==(const State<Size>& a, const State<Size>& b) noexcept {
-  bool same = a.start == b.start && a.dt == b.dt && a.steps == b.steps;
+  bool same = a.start == b.start && a.dt == b.dt && a.steps == b.steps && a.decided == b.decided;
   for (int j = 0; j < Size::coordinates; ++j) same = same && a.q[j] == b.q[j] && a.v[j] == b.v[j];
   for (int g = 0; g < Size::guides; ++g) same = same && a.mode[g] == b.mode[g];
   for (int c = 0; c < Size::contacts; ++c) same = same && a.sign[c] == b.sign[c];
@@ -71,17 +102,21 @@ struct Reaction {
 
 /// What a step (or a reaction) says of itself.
 struct Report {
+  static constexpr int room = 32;  ///< for events: the most that one step may span
+
   Status status = Status::ok;
-  Uniqueness uniqueness = Uniqueness::certified;  ///< the weakest over the stages
+  Uniqueness uniqueness = Uniqueness::certified;  ///< the weakest over all decisions of the step
+  int evaluations = 0;                            ///< of accelerations and forces
   int solves = 0;                                 ///< linear solves of the hardest HLCP
   double residual = 0;        ///< largest self-check residual, in units of its rounding scale: see acceleration.hpp
   double drift_position = 0;  ///< max |Phi|, |phi| where the step starts, m | rad
   double drift_velocity = 0;  ///< max |Phi'|, |phi'| there
-  int events = 0;             ///< located
-  int unlocated_events = 0;   ///< slip and normal reversals that the step went over; by euler, which
-  ///< looks at a step's start alone, that the step before went over
-  int guide = none;   ///< the guide that a refusal is about
-  EnergyFlow energy;  ///< J, of this step
+  int events = 0;             ///< located, in the order of time
+  Event event[room];          ///< the first `events` are valid
+  int unlocated_events = 0;   ///< changes of mode or contact sign that the step went over; by euler, which looks at a
+                              ///< step's start alone, that the step before went over
+  int guide = none;           ///< the guide that a refusal, or `refuted`, is about
+  EnergyFlow energy;          ///< J, of this step
 };
 
 }  // namespace slideway

@@ -20,13 +20,13 @@ enum class Status : unsigned char {
   event_limit
 };
 
-/// What is known of a solution's being the only one.
+/// What is known of a solution's being the only one, from the strongest statement to the weakest.
 enum class Uniqueness : unsigned char {
-  certified,   ///< the column W-property is proved: one solution for every right side
-  single,      ///< the W-property fails, but every other sign pattern of this very problem is excluded
-  refuted,     ///< a second solution of this very problem is known
-  unproven,    ///< none of these
-  motion_only  ///< the motion is unique, the forces are a choice
+  certified,    ///< the column W-property is proved: one solution for every right side
+  single,       ///< the W-property fails, but every other sign pattern of this very problem is excluded
+  motion_only,  ///< the motion is unique, the forces are a choice
+  unproven,     ///< none of these
+  refuted       ///< a second solution of this very problem is known
 };
 
 /// One sentence for a status. No failure; constant time.
@@ -35,8 +35,9 @@ constexpr const char* sentence(Status status) noexcept {
     case Status::ok:
       return "The step was made and every check on it held.";
     case Status::invalid_input:
-      return "A value is not finite, dt is not positive, the scene has defects, the method does not apply to it, or a "
-             "guide with friction is at rest.";
+      return "A value is not finite, dt is not positive, an option is out of range, the scene has defects, or the "
+             "method "
+             "does not apply to it.";
     case Status::singular_constraints:
       return "Rank is lost in this pose: constraints are redundant, or a coordinate moves no mass.";
     case Status::no_solution:

@@ -1,19 +1,10 @@
 // Time stepping: State -> State, or a refusal that leaves every byte of the state as it was.
 #pragma once
 
-#include <slideway/project.hpp>
+#include <slideway/events.hpp>
+#include <slideway/method.hpp>
 
 namespace slideway {
-
-enum class Method : unsigned char {
-  euler,     ///< semi-implicit: v, then q with the new v; order 1
-  rk4,       ///< classical Runge-Kutta with an HLCP in every stage (WWZ14); order 4 between events
-  kinematic  ///< fully driven scenes: positions solved, not integrated; an HLCP for the reactions
-};
-
-constexpr const char* name(Method method) noexcept {
-  return method == Method::euler ? "euler" : method == Method::rk4 ? "rk4" : "kinematic";
-}
 
 /// Steps a scene. Its options are public members, Solving's among them; stepping changes none.
 template <class Source>
@@ -26,7 +17,10 @@ class BasicStepper : public Solving {
 
   Source source;
   Method method = Method::rk4;
-  double drift_limit = 1e-3;  ///< largest |Phi|, |phi| that a step may start from, m or rad, for each m of length
+  Stabilise stabilise = Stabilise::baumgarte;
+  double theta = 0.5;             ///< of moreau: 1/2 takes forces at the middle of the step, 1 at its start
+  int max_events = Report::room;  ///< that one step of a located method may span, at most Report::room
+  double drift_limit = 1e-3;      ///< largest |Phi|, |phi| that a step may start from, m or rad, for each m of length
 
   template <class... Data>
   explicit constexpr BasicStepper(const Data&... data) noexcept : source(data...) {
@@ -46,23 +40,30 @@ class BasicStepper : public Solving {
   }
 
   /// One step of dt > 0, s. On ok the state is advanced; otherwise it is untouched and the report says why.
-  /// No heap; at most four evaluations of `accelerate`; for kinematic three, and two projections.
+  /// No heap. Evaluations of accelerations and forces: euler 1, rk4 4 (one more where a sliding speed changes its
+  /// sign), kinematic 3 and two projections, moreau 1; located methods: events.hpp.
   Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept {
     Report report;
     const bool same_dt = dt == state.dt;
     const double start = same_dt ? state.start : state.time();
     const long long steps = same_dt ? state.steps : 0;
     const double t = start + static_cast<double>(steps) * dt;
-    if (!source.sound || !(dt > 0) || !detail::finite(t)) {
+    if (!source.sound || !(dt > 0) || !detail::finite(t) || !(theta >= 0 && theta <= 1) || max_events > Report::room) {
       report.status = Status::invalid_input;
       return report;
     }
-    Next next;
-    begin(state, next);
-    report.status = method == Method::rk4     ? step_rk4(state, t, dt, inputs, next, report)
-                    : method == Method::euler ? step_euler(state, t, dt, inputs, next, report)
-                                              : step_kinematic(state, t, dt, inputs, next, report);
-    if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::inaccurate;
+    Phase y;
+    Modes m;
+    begin(state, y, m);
+    const Solving how = solving();
+    const Setting setting{source, how, inputs, t, report};
+    report.status = advance(setting, dt, state, y, m);
+    // Rates are what moreau imposes, at q_m: turned to another pose they would spare the next step its impulse.
+    if (report.status == Status::ok && stabilise == Stabilise::projection && method != Method::kinematic) {
+      report.status =
+          Projection<Source>(source, inputs, dt, y.q, y.v).onto_constraints(t + dt, m.mode, method != Method::moreau);
+    }
+    if (report.status == Status::ok && !finite(y.q, y.v)) report.status = Status::inaccurate;
     if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
       report.status = Status::drift_limit;
     }
@@ -70,23 +71,28 @@ class BasicStepper : public Solving {
       if (!finite(state, inputs)) report.status = Status::invalid_input;
       return report;
     }
-    report.unlocated_events = finish(next, state);
+    finish(y, m, state);
     state.start = start;
     state.dt = dt;
     state.steps = steps + 1;
     return report;
   }
 
-  /// Forces and accelerations at the state. r is valid when the report's status is ok.
+  /// Forces and accelerations at the state, just after it. r is valid when the report's status is ok.
+  /// By moreau: the means of a step of state.dt from there, once there is one.
   Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
     Report report;
     if (!source.sound || !detail::finite(state.time())) {
       report.status = Status::invalid_input;
       return report;
     }
-    Next at;
-    begin(state, at);
-    report.status = evaluate(state.time(), 0, state.q, state.v, inputs, at, r, report);
+    Phase y;
+    Modes m;
+    begin(state, y, m);
+    const Solving how = solving();
+    const Setting setting{source, how, inputs, state.time(), report};
+    report.status = method == Method::moreau && state.dt > 0 ? impulse(setting, state.dt, y, m, r)
+                                                             : setting.evaluate(0, y, Aim::decide, true, m, r);
     if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
       report.status = Status::drift_limit;
     }
@@ -99,7 +105,7 @@ class BasicStepper : public Solving {
     Report report;
     State next = state;
     report.status = source.sound && finite(state, inputs)
-                        ? slideway::project(source, next.time(), 0, inputs, next.q, next.v)
+                        ? Projection<Source>(source, inputs, 0, next.q, next.v).onto_constraints(next.time(), nullptr)
                         : Status::invalid_input;
     if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::no_convergence;
     if (report.status == Status::ok) state = next;
@@ -108,7 +114,7 @@ class BasicStepper : public Solving {
 
   /// Kinetic energy, J.
   double kinetic_energy(const State& state) const noexcept {
-    const Kinematics<Size> k = place(state);
+    const Kinematics<Size> k = place(state.q, state.v);
     double energy = 0;
     for (int i = 0; i < source.scene.bodies; ++i) {
       const Body& body = source.scene.body[i];
@@ -120,7 +126,7 @@ class BasicStepper : public Solving {
 
   /// Potential energy of gravity and springs, J.
   double potential_energy(const State& state) const noexcept {
-    const Kinematics<Size> k = place(state);
+    const Kinematics<Size> k = place(state.q, state.v);
     double energy = 0;
     for (int i = 0; i < source.scene.bodies; ++i) {
       const Body& body = source.scene.body[i];
@@ -143,50 +149,46 @@ class BasicStepper : public Solving {
 
  private:
   static constexpr int n = at_least_one(Size::coordinates);
+  using Phase = slideway::Phase<Size>;
+  using Modes = slideway::Modes<Size>;
+  using Setting = slideway::Setting<Source>;
 
-  Kinematics<Size> place(const State& state) const noexcept {
+  Kinematics<Size> place(const double* q, const double* v) const noexcept {
     Kinematics<Size> k;
     const double none_prescribed[n] = {};
-    kinematics(source, state.q, state.v, none_prescribed, k);
+    kinematics(source, q, v, none_prescribed, k);
     return k;
   }
 
-  /// What a step makes, apart from the state until it is known to be good. `first_` is of the first stage, at the state
-  /// itself; `_reversed` marks what was another at some stage than there, or there than after the step before.
-  struct Next {
-    double q[n], v[n];
-    signed char mode[at_least_one(Size::guides)], sign[at_least_one(Size::contacts)];
-    signed char first_mode[at_least_one(Size::guides)], first_sign[at_least_one(Size::contacts)];
-    bool slip_reversed[at_least_one(Size::guides)], force_reversed[at_least_one(Size::contacts)];
-  };
-
-  void begin(const State& state, Next& next) const noexcept {
-    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-      next.mode[g] = state.mode[g];
-      next.slip_reversed[g] = false;
-    });
-    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD {
-      next.sign[c] = state.sign[c];
-      next.force_reversed[c] = false;
-    });
+  /// Baumgarte's gains, or none where projection takes their place.
+  Solving solving() const noexcept {
+    Solving s = *this;
+    if (stabilise == Stabilise::projection) s.gains = {0, 0};
+    return s;
   }
 
-  /// next into state; the number of events that the step went over.
-  int finish(const Next& next, State& state) const noexcept {
-    int events = 0;
+  void begin(const State& state, Phase& y, Modes& m) const noexcept {
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      state.q[j] = next.q[j];
-      state.v[j] = next.v[j];
+      y.q[j] = state.q[j];
+      y.v[j] = state.v[j];
     });
     for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
-      state.mode[g] = next.mode[g];
-      events += next.slip_reversed[g] ? 1 : 0;
+      m.mode[g] = state.mode[g];
+      m.still[g] = m.leaving[g] = m.bound[g] = false;
+      m.stiction[g] = 0;
     });
-    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD {
-      state.sign[c] = next.sign[c];
-      events += next.force_reversed[c] ? 1 : 0;
+    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD { m.sign[c] = state.sign[c]; });
+    m.decided = state.decided;
+  }
+
+  void finish(const Phase& y, const Modes& m, State& state) const noexcept {
+    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
+      state.q[j] = y.q[j];
+      state.v[j] = y.v[j];
     });
-    return events;
+    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD { state.mode[g] = m.mode[g]; });
+    for_each<Source, Size::contacts>(source.tables.contacts, [&](int c) SLIDEWAY_FOLD { state.sign[c] = m.sign[c]; });
+    state.decided = true;
   }
 
   /// A sum of finite numbers far from overflow is finite, and one that is not finite makes it so.
@@ -204,96 +206,226 @@ class BasicStepper : public Solving {
     return detail::finite(sum) && finite(state.q, state.v);
   }
 
-  /// accelerate(), with mode and sign of `at` as guesses and answers.
-  Status evaluate(double t, double tau, const double* q, const double* v, const Inputs& inputs, Next& at, Reaction& r,
-                  Report& report) const noexcept {
-    return accelerate(source, t, tau, q, v, inputs, *this, tau == 0, at.mode, at.sign, r, report);
-  }
-
-  /// The same within a step: its share of the energies, and what has reversed.
-  Status stage(const State& before, double t, double tau, double weight, const double* q, const double* v,
-               const Inputs& inputs, Next& next, Reaction& r, Report& report) const noexcept {
-    const Status status = evaluate(t + tau, tau, q, v, inputs, next, r, report);
-    if (status != Status::ok) return status;
-    report.energy.work += weight * r.power.work;
-    report.energy.dissipated += weight * r.power.dissipated;
-    report.energy.constraint_work += weight * r.power.constraint_work;
-    for_each<Source, Size::contacts>(source.tables.rough, [&](int m) SLIDEWAY_FOLD {
-      const int c = source.tables.rough_contact[m], g = source.tables.guide_of[c];
-      next.slip_reversed[g] |= (tau == 0 ? before.mode[g] : next.first_mode[g]) * next.mode[g] < 0;
-      next.force_reversed[c] |= (tau == 0 ? before.sign[c] : next.first_sign[c]) * next.sign[c] < 0;
-      if (tau != 0) return;
-      next.first_mode[g] = next.mode[g];
-      next.first_sign[c] = next.sign[c];
-    });
-    return Status::ok;
-  }
-
-  /// With a_i the accelerations of the four stages: v + h/6 (a1 + 2 a2 + 2 a3 + a4), and since the stages' speeds are
-  /// v, v + h/2 a1, v + h/2 a2, v + h a3, q + h v + h^2/6 (a1 + a2 + a3).
-  Status step_rk4(const State& state, double t, double h, const Inputs& inputs, Next& next,
-                  Report& report) const noexcept {
-    constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
-    double q[n], v[n], sum[n], weighted_sum[n];
-    Reaction r;
-    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      q[j] = state.q[j];
-      v[j] = state.v[j];
-      sum[j] = weighted_sum[j] = r.acceleration[j] = 0;
-    });
-    for (int k = 0; k < 4; ++k) {
-      const double tau = node[k] * h;
-      const Status status = stage(state, t, tau, weight[k] * (h / 6), q, v, inputs, next, r, report);
-      if (status != Status::ok) return status;
-      const double reach = k < 3 ? node[k + 1] * h : 0;
-      for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        const double a = r.acceleration[j];
-        weighted_sum[j] += weight[k] * a;
-        if (k == 3) return;
-        sum[j] += a;
-        q[j] = state.q[j] + reach * v[j];
-        v[j] = state.v[j] + reach * a;
-      });
+  Status advance(const Setting& setting, double h, const State& state, Phase& y, Modes& m) const noexcept {
+    switch (method) {
+      case Method::euler:
+        return step_euler(setting, h, state, y, m);
+      case Method::rk4:
+        return step_rk4(setting, h, state, y, m);
+      case Method::rk4_located:
+        return step_located<runge_kutta_4>(setting, h, y, m);
+      case Method::dop853_located:
+        return step_located<dormand_prince_8>(setting, h, y, m);
+      case Method::moreau:
+        return step_moreau(setting, h, state, y, m);
+      case Method::kinematic:
+        return step_kinematic(setting, h, state, y, m);
     }
+    return Status::invalid_input;
+  }
+
+  template <const auto& tableau>
+  [[gnu::noinline]] Status step_located(const Setting& setting, double h, Phase& y, Modes& m) const noexcept {
+    return LocatedStep<tableau, Source>(setting, max_events).run(h, y, m);
+  }
+
+  /// Which guides and contacts have changed their mode or sign within a step that does not locate it.
+  struct Changes {
+    bool mode[at_least_one(Size::guides)] = {}, sign[at_least_one(Size::contacts)] = {};
+  };
+
+  /// Changes from one evaluation to another; a first evaluation has nothing before it.
+  void compare(const signed char* mode, const signed char* sign, bool decided, const Modes& now,
+               Changes& changes) const noexcept {
+    if (!decided) return;
+    for_each<Source, Size::contacts>(source.tables.rough, [&](int i) SLIDEWAY_FOLD {
+      const int c = source.tables.rough_contact[i], g = source.tables.guide_of[c];
+      changes.mode[g] |= mode[g] != now.mode[g];
+      changes.sign[c] |= source.scene.guide[g].mu_static > 0 && sign[c] != now.sign[c];
+    });
+  }
+
+  int count(const Changes& changes) const noexcept {
+    int events = 0;
+    for_each<Source, Size::guides>(source.scene.guides,
+                                   [&](int g) SLIDEWAY_FOLD { events += changes.mode[g] ? 1 : 0; });
+    for_each<Source, Size::contacts>(source.tables.contacts,
+                                     [&](int c) SLIDEWAY_FOLD { events += changes.sign[c] ? 1 : 0; });
+    return events;
+  }
+
+  /// At a step's end: guides whose sliding speed has changed its sign within the step, at a stage (`crossed`) or at the
+  /// end, would chatter or creep. With that speed at zero the law at rest is asked; those that stick there lose it, by
+  /// the least change in the mass metric. A motion that the forces bring through it within the step is away from it by
+  /// no more than `reach`, h times the first stage's accelerations; twice that, since these change meanwhile.
+  void arrest(const Setting& setting, double h, const double* acceleration, const Modes& first, const bool* crossed,
+              Phase& y, Modes& m, Changes& changes) const noexcept {
+    const Kinematics<Size> k = place(y.q, y.v);
+    signed char moves[at_least_one(Size::guides)], back[at_least_one(Size::guides)];
+    bool any = false;
+    for (int g = 0; g < source.scene.guides; ++g) {
+      Sliding s;
+      sliding(source, k, g, s);
+      back[g] = static_cast<signed char>(s.slip[0] > 0 ? 1 : s.slip[0] < 0 ? -1 : 0);
+      const bool turned = crossed[g] || first.mode[g] * s.slip[0] <= 0;
+      moves[g] = source.tables.is_rough[g] && first.mode[g] != 0 && turned ? 0 : 1;
+      any = any || moves[g] == 0;
+    }
+    if (!any) return;
+    Phase at_rest = y;
+    Modes held = m;
+    double reach[n];
+    for (int j = 0; j < source.tables.coordinates; ++j) reach[j] = h * acceleration[j];
+    if (!Projection<Source>(source, setting.inputs, h, at_rest.q, at_rest.v).arrest(moves, 2, reach)) return;
+    for (int g = 0; g < source.scene.guides; ++g) {
+      if (moves[g] != 0) continue;
+      held.mode[g] = 0;
+      held.still[g] = true;
+      changes.mode[g] = true;
+      if (back[g] != 0) m.mode[g] = back[g];
+    }
+    Reaction r;
+    if (setting.evaluate(h, at_rest, Aim::decide, false, held, r) != Status::ok) return;
+    bool all = true, none_sticks = true;
+    for (int g = 0; g < source.scene.guides; ++g) {
+      if (moves[g] != 0) continue;
+      if (held.mode[g] == 0) m.mode[g] = 0;
+      all = all && held.mode[g] == 0;
+      none_sticks = none_sticks && held.mode[g] != 0;
+      if (held.mode[g] != 0) moves[g] = 1;
+    }
+    if (none_sticks) return;
+    if (!all) {
+      at_rest = y;
+      Projection<Source>(source, setting.inputs, h, at_rest.q, at_rest.v).arrest(moves, 2, reach);
+    }
+    y = at_rest;
+  }
+
+  /// An HLCP in every stage. A guide that is at rest in the first keeps the set-valued law in the others.
+  [[gnu::noinline]] Status step_rk4(const Setting& setting, double h, const State& state, Phase& y,
+                                    Modes& m) const noexcept {
+    Reaction r;
+    const Status status = setting.evaluate(0, y, Aim::decide, true, m, r);
+    if (status != Status::ok) return status;
+    m.decided = true;
+    Changes changes;
+    compare(state.mode, state.sign, state.decided, m, changes);
+    const Modes first = m;
+    double lowest[at_least_one(Size::guides)], highest[at_least_one(Size::guides)];
+    for_each<Source, Size::guides>(source.scene.guides,
+                                   [&](int g) SLIDEWAY_FOLD { lowest[g] = highest[g] = r.slip[g]; });
+    Stages<runge_kutta_4, Source> stages;
+    const Status made = stages.run(
+        setting, 0, h, y, r, Aim::decide, m,
+        [&](int) SLIDEWAY_FOLD {
+          for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+            if (first.mode[g] == 0) m.mode[g] = 0;
+          });
+        },
+        [&](int, const Reaction& at) SLIDEWAY_FOLD {
+          compare(first.mode, first.sign, true, m, changes);
+          for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+            lowest[g] = at.slip[g] < lowest[g] ? at.slip[g] : lowest[g];
+            highest[g] = larger(highest[g], at.slip[g]);
+          });
+        });
+    if (made != Status::ok) return made;
+    y = stages.to;
+    add(setting.report.energy, 1, stages.flow);
+    bool crossed[at_least_one(Size::guides)], near = false;  // near: a speed as near to zero as it changes by
+    for_each<Source, Size::guides>(source.scene.guides, [&](int g) SLIDEWAY_FOLD {
+      const double range = highest[g] - lowest[g];
+      crossed[g] = lowest[g] <= 0 && highest[g] >= 0;
+      near |= source.tables.is_rough[g] && first.mode[g] != 0 && lowest[g] - range <= 0 && highest[g] + range >= 0;
+    });
+    if (near) arrest(setting, h, r.acceleration, first, crossed, y, m, changes);
+    setting.report.unlocated_events = count(changes);
+    return Status::ok;
+  }
+
+  [[gnu::noinline]] Status step_euler(const Setting& setting, double h, const State& state, Phase& y,
+                                      Modes& m) const noexcept {
+    Reaction r;
+    const Status status = setting.evaluate(0, y, Aim::decide, true, m, r);
+    if (status != Status::ok) return status;
+    m.decided = true;
+    Changes changes;
+    compare(state.mode, state.sign, state.decided, m, changes);
+    add(setting.report.energy, h, r.power);
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      next.q[j] = state.q[j] + h * (state.v[j] + h / 6 * sum[j]);
-      next.v[j] = state.v[j] + h / 6 * weighted_sum[j];
+      y.v[j] += h * r.acceleration[j];
+      y.q[j] += h * y.v[j];
+    });
+    const Modes first = m;
+    const bool crossed[at_least_one(Size::guides)] = {};
+    if (source.tables.rough > 0) arrest(setting, h, r.acceleration, first, crossed, y, m, changes);
+    setting.report.unlocated_events = count(changes);
+    return Status::ok;
+  }
+
+  /// Moreau's theta method (Moreau 1988; Acary and Brogliato 2008, ch. 10): rates of constraints and Coulomb's law,
+  /// set-valued for every guide, are imposed on v+ = v + h a at q_m = q + (1 - theta) h v, so that forces are means
+  /// over the step, impulses over h: finite even where accelerations have no solution.
+  ///   M(q_m) a = h(q_m, v) + forces;  Phi'+ = -(beta / alpha) Phi;  q+ = q_m + theta h v+
+  [[gnu::noinline]] Status step_moreau(const Setting& setting, double h, const State& state, Phase& y,
+                                       Modes& m) const noexcept {
+    Reaction r;
+    const Status status = impulse(setting, h, y, m, r);
+    if (status != Status::ok) return status;
+    Changes changes;
+    compare(state.mode, state.sign, state.decided, m, changes);
+    setting.report.unlocated_events = count(changes);
+    add(setting.report.energy, h, r.power);
+    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
+      y.v[j] += h * r.acceleration[j];
+      y.q[j] += theta * h * y.v[j];
     });
     return Status::ok;
   }
 
-  Status step_euler(const State& state, double t, double h, const Inputs& inputs, Next& next,
-                    Report& report) const noexcept {
-    Reaction r;
-    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD { r.acceleration[j] = 0; });
-    const Status status = stage(state, t, 0, h, state.q, state.v, inputs, next, r, report);
-    if (status != Status::ok) return status;
-    for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-      next.v[j] = state.v[j] + h * r.acceleration[j];
-      next.q[j] = state.q[j] + h * next.v[j];
-    });
-    return Status::ok;
+  /// The means of a step of h from y; y.q becomes q_m.
+  Status impulse(const Setting& setting, double h, Phase& y, Modes& m, Reaction& r) const noexcept {
+    const double before = (1 - theta) * h;
+    for_each<Source, Size::coordinates>(source.tables.coordinates,
+                                        [&](int j) SLIDEWAY_FOLD { y.q[j] += before * y.v[j]; });
+    Solving means = setting.solving;
+    const Gains given = setting.solving.gains;
+    means.gains = {1 / h, given.alpha > 0 ? given.beta / given.alpha / h : 0, 0};
+    return accelerate(
+        source, Moment<Size>{setting.t + before, before, y.q, y.v, setting.inputs, Aim::impulse, true, h, h - before},
+        means, m, r, setting.report);
   }
 
   /// Reactions at the start, middle and end of the step, for Simpson's rule of the energies.
-  Status step_kinematic(const State& state, double t, double h, const Inputs& inputs, Next& next,
-                        Report& report) const noexcept {
+  [[gnu::noinline]] Status step_kinematic(const Setting& setting, double h, const State& state, Phase& y,
+                                          Modes& m) const noexcept {
     if (!fully_driven(source)) return Status::invalid_input;
     constexpr double weight[3] = {1, 4, 1};
+    Changes changes;
     Reaction r;
     for (int k = 0; k < 3; ++k) {
       const double tau = 0.5 * k * h;
-      for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD {
-        next.q[j] = k == 0 ? state.q[j] : next.q[j] + 0.5 * h * next.v[j];
-        if (k == 0) next.v[j] = state.v[j];
-      });
       if (k > 0) {
-        const Status placed = slideway::project(source, t + tau, tau, inputs, next.q, next.v);
+        for_each<Source, Size::coordinates>(source.tables.coordinates,
+                                            [&](int j) SLIDEWAY_FOLD { y.q[j] += 0.5 * h * y.v[j]; });
+        const Status placed =
+            Projection<Source>(source, setting.inputs, tau, y.q, y.v).onto_constraints(setting.t + tau, nullptr);
         if (placed != Status::ok) return placed;
       }
-      const Status status = stage(state, t, tau, weight[k] * (h / 6), next.q, next.v, inputs, next, r, report);
+      const Modes before = m;
+      m.decided = false;  // speeds are known: they alone tell
+      const double position = setting.report.drift_position, velocity = setting.report.drift_velocity;
+      const Status status = setting.evaluate(tau, y, Aim::decide, true, m, r);
       if (status != Status::ok) return status;
+      m.decided = true;
+      compare(before.mode, before.sign, k > 0 || state.decided, m, changes);
+      add(setting.report.energy, weight[k] * (h / 6), r.power);
+      if (k == 0) continue;
+      setting.report.drift_position = position;
+      setting.report.drift_velocity = velocity;
     }
+    setting.report.unlocated_events = count(changes);
     return Status::ok;
   }
 };

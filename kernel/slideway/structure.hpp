@@ -60,13 +60,16 @@ struct Tables {
   Index ups[n_coordinates] = {};    ///< free coordinates nearer to the ground on the path of a free coordinate
   Index up[n_coordinates][n_coordinates] = {};
 
-  // contacts, guide by guide; the rough ones (mu > 0) are the unknowns of the HLCP, the others are ideal rows
-  Index contacts = 0, rough = 0, ideal = 0;  ///< ideal rows: two a pin, then one a contact without friction
+  // contacts, guide by guide; those of rough guides (mu_static > 0 or preload > 0: they can stick) are the unknowns of
+  // the HLCP, the others are ideal rows
+  Index contacts = 0, rough = 0, ideal = 0;  ///< ideal rows: two a pin, then one a contact of a guide that is not rough
   Index first_contact[n_guides] = {};
   Index guide_of[n_contacts] = {};
   Index row_of[n_contacts] = {};  ///< among the rough contacts, or among the ideal rows; one after another in a guide
   Index rough_contact[n_contacts] = {};
   bool is_rough[n_guides] = {};
+  bool is_steady[n_guides] = {};  ///< has friction that does not follow its load: viscous or preload
+  Index steady = 0;               ///< such guides
   Link<Size> guide[n_guides] = {};
   Link<Size> pin[at_least_one(Size::pins)] = {};
 
@@ -80,7 +83,7 @@ struct Tables {
   bool moving[n_bodies] = {};          ///< the origin's speed can be other than zero
   bool freely_moving[n_bodies] = {};   ///< ... by a free coordinate
   bool off_centre[n_bodies] = {};      ///< mass of the body and all it carries, off its origin
-  bool applied[n_bodies] = {};         ///< springs or loads act on the body
+  bool applied[n_bodies] = {};         ///< springs, loads, or viscous or preload friction act on the body
 
   // constant sums
   double carried_mass[n_bodies] = {};    ///< of the body and all that it carries, kg
@@ -169,7 +172,9 @@ template <class Size>
 constexpr void derive_links(const Scene<Size>& scene, Tables<Size>& t) noexcept {
   t.ideal = static_cast<Index>(2 * scene.pins);
   for (int g = 0; g < scene.guides; ++g) {
-    t.is_rough[g] = scene.guide[g].mu > 0;
+    t.is_rough[g] = scene.guide[g].mu_static > 0 || scene.guide[g].preload > 0;
+    t.is_steady[g] = scene.guide[g].viscous > 0 || scene.guide[g].preload > 0;
+    if (t.is_steady[g]) ++t.steady;
     t.first_contact[g] = t.contacts;
     for (int c = 0; c < scene.guide[g].contacts; ++c) {
       const Index k = t.contacts++;
@@ -244,6 +249,11 @@ constexpr void derive_zeros(const Scene<Size>& scene, Tables<Size>& t) noexcept 
     apply(scene.spring[s].b);
   }
   for (int l = 0; l < scene.loads; ++l) apply(scene.load[l].body);
+  for (int g = 0; g < scene.guides; ++g) {
+    if (!t.is_steady[g]) continue;
+    apply(scene.guide[g].slider);
+    apply(scene.guide[g].rail);
+  }
 }
 
 template <class Size>

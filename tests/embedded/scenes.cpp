@@ -63,7 +63,7 @@ bool run(const char* name, Known known, double dt, int steps, Method method) {
 int main() {
   bool same = true;
   slideway::test::for_each_scene([&](const char* name, const auto& stepper, double dt, int steps) {
-    for (const Method method : {Method::euler, Method::rk4, Method::kinematic}) {
+    for (const Method method : slideway::methods) {
       same = run(name, stepper, dt, steps, method) && same;
     }
   });

@@ -1,26 +1,10 @@
 // Instants and events of a run, as files and charts show them.
 #pragma once
 
-#include <slideway/scene.hpp>
+#include <slideway/state.hpp>
 #include <vector>
 
 namespace slideway::io {
-
-/// What ends a mode.
-enum class EventKind { slip_reversal, stick, slip, normal_reversal };
-constexpr const char* name(EventKind kind) noexcept {
-  switch (kind) {
-    case EventKind::slip_reversal:
-      return "slip_reversal";
-    case EventKind::stick:
-      return "stick";
-    case EventKind::slip:
-      return "slip";
-    case EventKind::normal_reversal:
-      return "normal_reversal";
-  }
-  return "unknown";
-}
 
 /// Vectors have the scene's own lengths and order; see Reaction for signs and units.
 struct Sample {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <slideway/io/build.hpp>
 #include <slideway/io/text.hpp>
+#include <slideway/method.hpp>
 
 namespace slideway::io {
 namespace {
@@ -79,7 +80,11 @@ void read_scene_fields(Build& build) {
 }  // namespace
 
 const std::vector<std::string>& methods() {
-  static const std::vector<std::string> list{"euler", "rk4", "kinematic"};
+  static const std::vector<std::string> list = [] {
+    std::vector<std::string> names;
+    for (const Method method : slideway::methods) names.emplace_back(name(method));
+    return names;
+  }();
   return list;
 }
 

@@ -7,15 +7,12 @@
 #pragma once
 
 #include <functional>
-#include <slideway/io/sample.hpp>
 #include <slideway/oracle/friction.hpp>
 #include <slideway/oracle/roots.hpp>
+#include <slideway/state.hpp>
 #include <string>
 
 namespace slideway::oracle {
-
-using io::EventKind;
-using io::name;
 
 template <class T>
 struct TrajectoryEvent {
