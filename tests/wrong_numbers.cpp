@@ -1,0 +1,215 @@
+// No wrong number: random parameters around the limits of every scene where methods fail, all methods, judged by the
+// oracle. A wrong number is an answer with `ok` that violates an equation, or whose error exceeds ten times what the
+// method's order promises without a word in the report (unlocated methods count what they step over).
+//
+// SLIDEWAY_DRAWS draws a scene, 1000 by default; SLIDEWAY_SEED chooses others. A failure prints the draw that shows it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <slideway/oracle/check.hpp>
+#include <support/steppers.hpp>
+
+namespace {
+
+using namespace slideway;
+using namespace slideway::test;
+using oracle::Real;
+using oracle::Verdict;
+
+struct Limits {
+  const char* scene;
+  double mu;  ///< where it fails, or a usual one
+  double dt;
+};
+
+void PrintTo(const Limits& l, std::ostream* out) { *out << l.scene; }
+
+int from_environment(const char* name, int usual) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? std::atoi(text) : usual;
+}
+
+/// One draw: the scene with its coefficients, loads and speeds changed. Coefficients are within 1e-8 of the limit, not
+/// so near that the rounding of a double decides, or anywhere; speeds are zero, or the scene's, or any.
+struct Draw {
+  Scene<Room> scene;
+  std::string text;
+};
+
+Draw draw(const Limits& limits, std::mt19937_64& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto pick = [&](int n) { return std::uniform_int_distribution(0, n - 1)(random); };
+  const auto factor = [&] {
+    const double side = pick(2) == 0 ? 1 : -1;
+    return pick(2) == 0 ? 1 + side * std::pow(10, uniform(-11, -8)) : uniform(0.3, 2);
+  };
+  Draw d{scene_of(limits.scene), ""};
+  for (int g = 0; g < d.scene.guides; ++g) {
+    Guide& guide = d.scene.guide[g];
+    if (guide.mu == 0 && guide.mu_static == 0) continue;
+    guide.mu = limits.mu * factor();
+    guide.mu_static = guide.mu * (pick(2) == 0 ? 1 : uniform(1, 1.5));
+    d.text += " mu " + std::to_string(guide.mu) + "/" + std::to_string(guide.mu_static);
+  }
+  const double load = std::array{1.0, 0.0, uniform(-2, 2)}[static_cast<std::size_t>(pick(3))];
+  for (int l = 0; l < d.scene.loads; ++l) {
+    d.scene.load[l].force = {load * d.scene.load[l].force.x, load * d.scene.load[l].force.y};
+    d.scene.load[l].torque *= load;
+  }
+  const double speed =
+      d.scene.drives > 0 ? 1 : std::array{1.0, 0.0, -1.0, uniform(-2, 2)}[static_cast<std::size_t>(pick(4))];
+  for (int i = 0; i < d.scene.bodies; ++i) {
+    for (double& v : d.scene.body[i].v) v *= speed;
+  }
+  d.text += " load " + std::to_string(load) + " speed " + std::to_string(speed);
+  return d;
+}
+
+oracle::ClaimedInstant claim_of(const RunStepper& stepper, const RunState& state, const RunStepper::Reaction& r) {
+  const auto& table = stepper.source.tables;
+  const auto& scene = stepper.source.scene;
+  oracle::ClaimedInstant c;
+  c.t = state.time();
+  c.q.assign(state.q, state.q + table.coordinates);
+  c.v.assign(state.v, state.v + table.coordinates);
+  c.acceleration.assign(r.acceleration, r.acceleration + table.coordinates);
+  c.lambda.assign(r.lambda, r.lambda + table.contacts);
+  c.friction.assign(r.friction, r.friction + scene.guides);
+  c.drive.assign(r.drive, r.drive + scene.drives);
+  for (int p = 0; p < scene.pins; ++p) c.pin.insert(c.pin.end(), {r.pin[p].x, r.pin[p].y});
+  c.mode.assign(state.mode, state.mode + scene.guides);
+  c.energy = energy(stepper, state);
+  return c;
+}
+
+struct Tally {
+  int instants = 0, refused = 0, refused_wrongly = 0, wrong = 0, runs = 0, late = 0;
+};
+
+/// Rounding of what is near zero is that of the terms that cancel there, `terms`: weights and loads. Forces far beyond
+/// these come from a matrix that is nearly singular, and its entries' rounding grows by as much again.
+bool fits(const oracle::Shortfall& s, double terms) {
+  const double size = std::fmax(s.scale, terms);
+  return s.error <= s.bound || s.error <= 1e-13 * size * std::fmax(10, s.scale / terms);
+}
+
+/// The largest load or weight, N.
+double largest_load(const RunStepper& stepper) {
+  const auto& scene = stepper.source.scene;
+  double most = 0;
+  for (int l = 0; l < scene.loads; ++l)
+    most = std::fmax(most, std::hypot(scene.load[l].force.x, scene.load[l].force.y));
+  for (int i = 0; i < scene.bodies; ++i) {
+    most = std::fmax(most, scene.body[i].mass * std::hypot(scene.gravity.x, scene.gravity.y));
+  }
+  return most;
+}
+
+/// The forces at a state against the oracle's.
+void judge_instant(const RunStepper& stepper, RunState state, const std::string& what, Tally& tally) {
+  RunStepper::Reaction r;
+  const Report report = stepper.reaction(state, {}, r);
+  ++tally.instants;
+  oracle::Checker checker(oracle::model_of<Real>(stepper.source.scene));
+  if (report.status != Status::ok) {
+    ++tally.refused;
+    return;
+  }
+  // To the oracle, a guide whose speed is zero is at rest, wherever it goes from there.
+  for (int g = 0; g < stepper.source.scene.guides; ++g) {
+    const bool held = state.decided && state.mode[g] == 0, still = std::fabs(r.slip[g]) <= 1e-14;
+    state.mode[g] = static_cast<signed char>(held || still ? 0 : r.slip[g] > 0 ? 1 : -1);
+  }
+  const double force = largest_load(stepper) + 1e-3,
+               motion = std::hypot(stepper.source.scene.gravity.x, stepper.source.scene.gravity.y) + 1;
+  const oracle::InstantCheck check = checker.check(claim_of(stepper, state, r));
+  const bool claimed_unique = report.uniqueness == Uniqueness::certified || report.uniqueness == Uniqueness::single;
+  bool good = check.verdict != Verdict::none;
+  if (check.verdict == Verdict::several) good = good && report.uniqueness == Uniqueness::refuted;
+  if (check.verdict == Verdict::motion_only) good = good && !claimed_unique && fits(check.acceleration, motion);
+  if (check.verdict == Verdict::unique) {
+    good = good && check.answered && fits(check.acceleration, motion) && fits(check.lambda, force) &&
+           fits(check.friction, force) && fits(check.drive, force) && fits(check.pin, force);
+  }
+  if (good) return;
+  ++tally.wrong;
+  ADD_FAILURE() << what << ": verdict " << static_cast<int>(check.verdict) << ", " << name(report.uniqueness)
+                << ", acceleration " << check.acceleration.error << "/" << check.acceleration.bound << ", lambda "
+                << check.lambda.error << "/" << check.lambda.bound << ", friction " << check.friction.error << "/"
+                << check.friction.bound << " mode " << int(state.mode[0]) << " friction " << r.friction[0];
+}
+
+double distance(const RunStepper& stepper, const RunState& a, const RunState& b, double& size) {
+  double most = 0;
+  for (int j = 0; j < stepper.source.tables.coordinates; ++j) {
+    most = std::fmax(most, std::fabs(a.q[j] - b.q[j]));
+    size = std::fmax(size, std::fabs(a.q[j]));
+  }
+  return most;
+}
+
+class WrongNumbersFull : public testing::TestWithParam<Limits> {};
+
+TEST_P(WrongNumbersFull, AreNone) {
+  const Limits& limits = GetParam();
+  const int draws = from_environment("SLIDEWAY_DRAWS", 1000), seed = from_environment("SLIDEWAY_SEED", 1);
+  constexpr int steps = 8;
+  Tally tally;
+  for (int k = 0; k < draws && !HasFatalFailure(); ++k) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed) * 1000003u + static_cast<std::uint64_t>(k));
+    const Draw d = draw(limits, random);
+    const std::string what = std::string(limits.scene) + " draw " + std::to_string(k) + ":" + d.text;
+    RunStepper stepper(d.scene);
+    judge_instant(stepper, stepper.start(), what, tally);
+    RunStepper::Reaction first;
+    double largest_acceleration = 0;
+    if (stepper.reaction(stepper.start(), {}, first).status == Status::ok) {
+      for (int j = 0; j < stepper.source.tables.coordinates; ++j) {
+        largest_acceleration = std::fmax(largest_acceleration, std::fabs(first.acceleration[j]));
+      }
+    }
+    stepper.method = Method::dop853_located;
+    const History truth = run(stepper, stepper.start(), limits.dt / 4, 4 * steps);
+    for (const Method method : integrating) {
+      stepper.method = method;
+      const History coarse = run(stepper, stepper.start(), limits.dt, steps);
+      if (coarse.last.status != Status::ok) continue;
+      ++tally.runs;
+      const History fine = run(stepper, stepper.start(), limits.dt / 2, 2 * steps);
+      RunStepper accelerations(d.scene);
+      if (method == Method::rk4_located) judge_instant(accelerations, coarse.state, what + " end", tally);
+      if (truth.last.status != Status::ok || fine.last.status != Status::ok) continue;
+      double size = 0;
+      const double error = distance(stepper, coarse.state, truth.state, size);
+      // Order p and its halving differ by (1 - 2^-p) of the error, at least half of it; plus rounding of some steps,
+      // and of forces as far as they move the mechanism.
+      const double promise = 2 * distance(stepper, coarse.state, fine.state, size) + 1e-13 * (1 + size) +
+                             1e-12 * largest_acceleration * std::pow(steps * limits.dt, 2);
+      if (error <= 10 * promise || coarse.unlocated > 0) continue;
+      ++tally.late;
+      ADD_FAILURE() << what << " " << name(method) << ": off by " << error << " m, promised " << promise;
+    }
+  }
+  RecordProperty("instants", tally.instants);
+  RecordProperty("refused", tally.refused);
+  RecordProperty("runs", tally.runs);
+  RecordProperty("wrong", tally.wrong + tally.late);
+  EXPECT_EQ(tally.wrong + tally.late, 0);
+  EXPECT_GT(tally.instants - tally.refused, draws / 10);  // else nothing was judged
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, WrongNumbersFull,
+                         testing::Values(Limits{"block_on_plane", 0.8, 1e-3}, Limits{"pushed_block", 0.25, 1e-3},
+                                         Limits{"belt", 0.2, 1e-2}, Limits{"overhung_slider", 1.0 / 6, 1e-3},
+                                         Limits{"rod_on_two_guides", 0.267949192431, 1e-3},
+                                         Limits{"elliptic_trammel", 1, 1e-3}, Limits{"trammel_at_rest", 0.5, 1e-3},
+                                         Limits{"painleve_klein", 1, 1e-3}, Limits{"painleve_rod", 4.0 / 3, 1e-3},
+                                         Limits{"slider_crank_driven", 1.5, 1e-3},
+                                         Limits{"slider_crank_equal", 0.9, 1e-3}, Limits{"high_mass_ratio", 1.5, 1e-3},
+                                         Limits{"slider_crank", 0.3, 1e-5}, Limits{"crank_rocker_free", 0.4, 1e-3}),
+                         [](const auto& one) { return std::string(one.param.scene); });
+
+}  // namespace
