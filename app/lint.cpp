@@ -95,9 +95,6 @@ class Linter {
           "has friction that only its drives feel: mu = 0 gives the same motion and contact forces, and other drive "
           "forces");
     }
-    if (guide.mu_static != guide.mu) {
-      add(Item::guide, g, "has a mu_static of its own: this version models sliding only, so it has no effect");
-    }
   }
 
   /// The one free coordinate turns the rail about its origin, and that lies on the line: friction has no arm.

@@ -3,7 +3,7 @@
 
 #include <memory>
 #include <optional>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 
 #include "recording.hpp"
 

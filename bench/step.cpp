@@ -24,7 +24,7 @@
 #include <slideway/scenes/v_engine_4.hpp>
 #include <slideway/scenes/v_engine_8.hpp>
 #include <slideway/self_test.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 #include <vector>
 

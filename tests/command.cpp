@@ -338,7 +338,6 @@ TEST_F(Command, LintFindsWhatASceneDoesNotNeed) {
                                         "guide 'second'",
                                         "guide 'stacked'",
                                         "guide 'driven'",
-                                        "guide 'driven'",
                                         "spring 'spring1'",
                                         "joint_spring 'joint_spring1'",
                                         "joint_spring 'joint_spring2'",

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <slideway/io/scene_file.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <slideway/io/scene_file.hpp>
 #include <slideway/oracle/drift.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 
 namespace {

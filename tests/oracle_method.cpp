@@ -6,7 +6,7 @@
 #include <slideway/io/scene_file.hpp>
 #include <slideway/oracle/method.hpp>
 #include <slideway/oracle/trajectory.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 
 namespace {

@@ -3,8 +3,7 @@
 
 #include <cmath>
 #include <ostream>
-#include <slideway/io/scene_file.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 
 namespace {

@@ -6,8 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <ostream>
-#include <slideway/io/scene_file.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 #include <vector>
 

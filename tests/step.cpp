@@ -7,8 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <slideway/io/scene_file.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 #include <string>
 #include <vector>
 

@@ -42,75 +42,14 @@ class BasicStepper : public Solving {
   /// One step of dt > 0, s. On ok the state is advanced; otherwise it is untouched and the report says why.
   /// No heap. Evaluations of accelerations and forces: euler 1, rk4 4 (one more where a sliding speed changes its
   /// sign), kinematic 3 and two projections, moreau 1; located methods: events.hpp.
-  Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept {
-    Report report;
-    const bool same_dt = dt == state.dt;
-    const double start = same_dt ? state.start : state.time();
-    const long long steps = same_dt ? state.steps : 0;
-    const double t = start + static_cast<double>(steps) * dt;
-    if (!source.sound || !(dt > 0) || !detail::finite(t) || !(theta >= 0 && theta <= 1) || max_events > Report::room) {
-      report.status = Status::invalid_input;
-      return report;
-    }
-    Phase y;
-    Modes m;
-    begin(state, y, m);
-    const Solving how = solving();
-    const Setting setting{source, how, inputs, t, report};
-    report.status = advance(setting, dt, state, y, m);
-    // Rates are what moreau imposes, at q_m: turned to another pose they would spare the next step its impulse.
-    if (report.status == Status::ok && stabilise == Stabilise::projection && method != Method::kinematic) {
-      report.status =
-          Projection<Source>(source, inputs, dt, y.q, y.v).onto_constraints(t + dt, m.mode, method != Method::moreau);
-    }
-    if (report.status == Status::ok && !finite(y.q, y.v)) report.status = Status::inaccurate;
-    if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
-      report.status = Status::drift_limit;
-    }
-    if (report.status != Status::ok) {
-      if (!finite(state, inputs)) report.status = Status::invalid_input;
-      return report;
-    }
-    finish(y, m, state);
-    state.start = start;
-    state.dt = dt;
-    state.steps = steps + 1;
-    return report;
-  }
+  Report step(State& state, double dt, const Inputs& inputs = {}) const noexcept;
 
   /// Forces and accelerations at the state, just after it. r is valid when the report's status is ok.
   /// By moreau: the means of a step of state.dt from there, once there is one.
-  Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
-    Report report;
-    if (!source.sound || !detail::finite(state.time())) {
-      report.status = Status::invalid_input;
-      return report;
-    }
-    Phase y;
-    Modes m;
-    begin(state, y, m);
-    const Solving how = solving();
-    const Setting setting{source, how, inputs, state.time(), report};
-    report.status = method == Method::moreau && state.dt > 0 ? impulse(setting, state.dt, y, m, r)
-                                                             : setting.evaluate(0, y, Aim::decide, true, m, r);
-    if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
-      report.status = Status::drift_limit;
-    }
-    if (report.status != Status::ok && !finite(state, inputs)) report.status = Status::invalid_input;
-    return report;
-  }
+  Report reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept;
 
   /// Moves the state onto the constraints: project.hpp. Untouched unless the report says ok.
-  Report project(State& state, const Inputs& inputs = {}) const noexcept {
-    Report report;
-    State next = state;
-    report.status = source.sound && finite(state, inputs)
-                        ? Projection<Source>(source, inputs, 0, next.q, next.v).onto_constraints(next.time(), nullptr)
-                        : Status::invalid_input;
-    if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::no_convergence;
-    if (report.status == Status::ok) state = next;
-    return report;
-  }
+  Report project(State& state, const Inputs& inputs = {}) const noexcept;
 
   /// Kinetic energy, J.
   double kinetic_energy(const State& state) const noexcept {
@@ -429,6 +368,78 @@ class BasicStepper : public Solving {
     return Status::ok;
   }
 };
+
+// Outside the class, so that a program can compile them once: `extern template class BasicStepper<...>`.
+
+template <class Source>
+Report BasicStepper<Source>::step(State& state, double dt, const Inputs& inputs) const noexcept {
+  Report report;
+  const bool same_dt = dt == state.dt;
+  const double start = same_dt ? state.start : state.time();
+  const long long steps = same_dt ? state.steps : 0;
+  const double t = start + static_cast<double>(steps) * dt;
+  if (!source.sound || !(dt > 0) || !detail::finite(t) || !(theta >= 0 && theta <= 1) || max_events > Report::room) {
+    report.status = Status::invalid_input;
+    return report;
+  }
+  Phase y;
+  Modes m;
+  begin(state, y, m);
+  const Solving how = solving();
+  const Setting setting{source, how, inputs, t, report};
+  report.status = advance(setting, dt, state, y, m);
+  // Rates are what moreau imposes, at q_m: turned to another pose they would spare the next step its impulse.
+  if (report.status == Status::ok && stabilise == Stabilise::projection && method != Method::kinematic) {
+    report.status =
+        Projection<Source>(source, inputs, dt, y.q, y.v).onto_constraints(t + dt, m.mode, method != Method::moreau);
+  }
+  if (report.status == Status::ok && !finite(y.q, y.v)) report.status = Status::inaccurate;
+  if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
+    report.status = Status::drift_limit;
+  }
+  if (report.status != Status::ok) {
+    if (!finite(state, inputs)) report.status = Status::invalid_input;
+    return report;
+  }
+  finish(y, m, state);
+  state.start = start;
+  state.dt = dt;
+  state.steps = steps + 1;
+  return report;
+}
+
+template <class Source>
+Report BasicStepper<Source>::reaction(const State& state, const Inputs& inputs, Reaction& r) const noexcept {
+  Report report;
+  if (!source.sound || !detail::finite(state.time())) {
+    report.status = Status::invalid_input;
+    return report;
+  }
+  Phase y;
+  Modes m;
+  begin(state, y, m);
+  const Solving how = solving();
+  const Setting setting{source, how, inputs, state.time(), report};
+  report.status = method == Method::moreau && state.dt > 0 ? impulse(setting, state.dt, y, m, r)
+                                                           : setting.evaluate(0, y, Aim::decide, true, m, r);
+  if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
+    report.status = Status::drift_limit;
+  }
+  if (report.status != Status::ok && !finite(state, inputs)) report.status = Status::invalid_input;
+  return report;
+}
+
+template <class Source>
+Report BasicStepper<Source>::project(State& state, const Inputs& inputs) const noexcept {
+  Report report;
+  State next = state;
+  report.status = source.sound && finite(state, inputs)
+                      ? Projection<Source>(source, inputs, 0, next.q, next.v).onto_constraints(next.time(), nullptr)
+                      : Status::invalid_input;
+  if (report.status == Status::ok && !finite(next.q, next.v)) report.status = Status::no_convergence;
+  if (report.status == Status::ok) state = next;
+  return report;
+}
 
 /// Steps a scene that the compiler knows. The scene is a constexpr variable at namespace scope.
 template <const auto& scene>
