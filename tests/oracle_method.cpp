@@ -1,12 +1,13 @@
 // The oracle's steps of the kernel's methods: what they are in 50 digits, and that the kernel's are these in doubles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 #include <slideway/io/scene_file.hpp>
+#include <slideway/io/stepper.hpp>
 #include <slideway/oracle/method.hpp>
 #include <slideway/oracle/trajectory.hpp>
-#include <slideway/io/stepper.hpp>
 #include <string>
 
 namespace {
@@ -53,6 +54,9 @@ double distance(std::vector<Real> x, const std::vector<Real>& y) {
 
 TreeState<Real> exact(const Stepper& stepper, const Stepper::State& state) {
   TreeState<Real> same{Real(state.time()), {}, {}};
+  for (int g = 0; g < stepper.source.scene.guides; ++g) {
+    same.rests.push_back(stepper.source.tables.is_rough[g] && state.decided && state.mode[g] == 0);
+  }
   for (int j = 0; j < stepper.source.tables.coordinates; ++j) {
     same.q.emplace_back(state.q[j]);
     same.v.emplace_back(state.v[j]);
@@ -69,17 +73,29 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
 class OracleMethod : public testing::TestWithParam<Case> {};
 
 /// Roundings of a step, u = 2^-53: the acceleration is good to the self-check's bound on its equations,
-/// A = 4 u items^2 of the largest, through v and q it is multiplied by h and h^2; and v, q take two roundings of their
-/// own size in the last sum and its terms, and q as many of h v. (The prescribed acceleration of a drive has the
-/// roundings of q - f(t) times beta and so on: with h^2 beta <= 1 they count as one more of q.)
-void expect_close(const Stepper& stepper, const TreeState<Real>& from, double h, const TreeState<Real>& kernel,
-                  const TreeState<Real>& truth) {
+/// A = 4 u items^2 of the largest, or of what forces would do `alone` (m/s^2) where they cancel; through v and q it is
+/// multiplied by h, `weight` times where weights b of both signs do not add up to 1, and h^2; and v, q take two
+/// roundings of their own size in the last sum and its terms, and q as many of h v. (The prescribed acceleration of a
+/// drive has the roundings of q - f(t) times beta and so on: with h^2 beta <= 1 they count as one more of q.)
+void expect_close(const Stepper& stepper, const TreeState<Real>& from, double h, double alone, double weight,
+                  const TreeState<Real>& kernel, const TreeState<Real>& truth) {
   const auto& table = stepper.source.tables;
   const double u = 0x1p-53, items = table.coordinates + table.contacts + table.ideal + stepper.source.scene.bodies;
-  const double v = std::max(size(from.v), size(truth.v)), a = distance(truth.v, from.v) / h;
-  const double v_bound = 4 * u * v + h * (4 * u * items * items) * a;
+  const double v = std::max(size(from.v), size(truth.v)), a = std::max(distance(truth.v, from.v) / h, alone);
+  const double v_bound = 4 * u * v + h * weight * (4 * u * items * items) * a;
   EXPECT_LE(distance(kernel.v, truth.v), v_bound) << v;
   EXPECT_LE(distance(kernel.q, truth.q), 4 * u * (size(truth.q) + h * v) + h * v_bound) << size(truth.q);
+}
+
+/// What forces would do alone, in the dynamics' last solution, to a mechanism that is driven or of which something
+/// rests.
+double alone(const Exact& oracle, const std::vector<bool>& rests) {
+  Real most(0);
+  if (oracle.model.drive.empty() && std::find(rests.begin(), rests.end(), true) == rests.end()) return 0;
+  for (int i = 0; i < 3 * oracle.dynamics.mechanism.bodies(); ++i) {
+    most = std::max(most, Real(oracle.dynamics.load(i) / oracle.dynamics.mechanism.mass(i)));
+  }
+  return static_cast<double>(most);
 }
 
 TEST_P(OracleMethod, KernelStepsDifferByRoundingAlone) {
@@ -92,15 +108,17 @@ TEST_P(OracleMethod, KernelStepsDifferByRoundingAlone) {
   for (int k = 0, compared = 0; compared < states; ++k) {
     if (k == (2 * compared + 1) * steps / (2 * states)) {
       const TreeState<Real> from = exact(*stepper, state);
-      for (const Scheme scheme : {Scheme::rk4, Scheme::euler}) {
+      for (const Scheme scheme : {Scheme::rk4, Scheme::euler, Scheme::rk4_located, Scheme::dop853_located}) {
         Stepper::State next = state;
-        stepper->method = scheme == Scheme::rk4 ? slideway::Method::rk4 : slideway::Method::euler;
+        stepper->method = method_of(scheme);
         const Report report = stepper->step(next, h);
         ASSERT_EQ(report.status, Status::ok);
+        if (report.events > 0) continue;  // cut there
         TreeState<Real> truth;
         ASSERT_TRUE(Method<Real>::goes_on(oracle.method.step(scheme, from, Real(h), truth)));
+        const double weight = static_cast<double>(slideway::oracle::runge_kutta<Real>(scheme).weight());
         SCOPED_TRACE(std::string(name(scheme)) + " from t = " + testing::PrintToString(state.time()));
-        expect_close(*stepper, from, h, exact(*stepper, next), truth);
+        expect_close(*stepper, from, h, alone(oracle, truth.rests), weight, exact(*stepper, next), truth);
         const auto drift = oracle.method.largest_drift(from);
         // m | rad: a hundred roundings of places of some metres and of angles of some turns, and of speeds.
         EXPECT_NEAR(report.drift_position, static_cast<double>(drift.position), 1e-14 * (1 + size(from.q)));
@@ -113,17 +131,17 @@ TEST_P(OracleMethod, KernelStepsDifferByRoundingAlone) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, OracleMethod,
-                         testing::Values(Case{"crank_rocker", 4}, Case{"crank_rocker_free", 4},
-                                         Case{"crank_rocker_offset", 4}, Case{"crank_rocker_two_contacts", 4},
-                                         Case{"crank_rocker_weightless", 4}, Case{"elliptic_trammel", 8},
-                                         Case{"four_bar_chain", 4}, Case{"gantry", 4}, Case{"overhung_slider", 4},
-                                         Case{"quick_return", 4}, Case{"rod_on_two_guides", 4}, Case{"slider_crank", 4},
-                                         Case{"slider_crank_driven", 4}, Case{"squeezer", 4}, Case{"v_engine_2", 2},
-                                         Case{"v_engine_4", 1}, Case{"v_engine_8", 2}, Case{"v_engine_16", 1},
-                                         Case{"high_mass_ratio", 4}, Case{"painleve_klein", 4}, Case{"painleve_rod", 4},
-                                         Case{"slider_crank_equal", 4}),
-                         [](const auto& test) { return std::string(test.param.scene); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, OracleMethod,
+    testing::Values(Case{"belt", 8}, Case{"block_on_plane", 4}, Case{"pushed_block", 2}, Case{"trammel_at_rest", 2},
+                    Case{"crank_rocker", 4}, Case{"crank_rocker_free", 4}, Case{"crank_rocker_offset", 4},
+                    Case{"crank_rocker_two_contacts", 4}, Case{"crank_rocker_weightless", 4},
+                    Case{"elliptic_trammel", 8}, Case{"four_bar_chain", 4}, Case{"gantry", 4},
+                    Case{"overhung_slider", 4}, Case{"quick_return", 4}, Case{"rod_on_two_guides", 4},
+                    Case{"slider_crank", 4}, Case{"slider_crank_driven", 4}, Case{"squeezer", 4}, Case{"v_engine_2", 2},
+                    Case{"v_engine_4", 1}, Case{"v_engine_8", 2}, Case{"v_engine_16", 1}, Case{"high_mass_ratio", 4},
+                    Case{"painleve_klein", 4}, Case{"painleve_rod", 4}, Case{"slider_crank_equal", 4}),
+    [](const auto& test) { return std::string(test.param.scene); });
 
 /// The error of q and v at `length` s in so many steps, against the trajectory by Taylor series.
 double error_after(Exact& oracle, Scheme scheme, const Real& length, int steps, const TreeState<Real>& truth) {
@@ -136,7 +154,7 @@ double error_after(Exact& oracle, Scheme scheme, const Real& length, int steps, 
 }
 
 /// Before the first event: at 0.195 s of the trammel, 0.18 s of the driven slider-crank.
-TEST(OracleMethodOrder, IsFourForRk4AndOneForEuler) {
+TEST(OracleMethodOrder, IsFourForRk4EightForDop853AndOneForEuler) {
   for (const char* scene : {"elliptic_trammel", "slider_crank_driven"}) {
     SCOPED_TRACE(scene);
     Exact oracle(model_of<Real>(scene_file(scene).scene));
@@ -150,6 +168,8 @@ TEST(OracleMethodOrder, IsFourForRk4AndOneForEuler) {
       return error_after(oracle, scheme, length, steps, truth) / error_after(oracle, scheme, length, 2 * steps, truth);
     };
     EXPECT_NEAR(ratio(Scheme::rk4, 32), 16, 1.6);
+    EXPECT_EQ(ratio(Scheme::rk4_located, 32), ratio(Scheme::rk4, 32));  // nothing changes its mode
+    EXPECT_NEAR(ratio(Scheme::dop853_located, 4), 256, 80);
     EXPECT_NEAR(ratio(Scheme::euler, 32), 2, 0.2);
   }
 }
@@ -202,6 +222,62 @@ TEST(OracleMethodFriction, HoldsAGuideInAllStagesThatTheFirstHolds) {
   ASSERT_EQ(oracle.method.step(Scheme::rk4, oracle.start(), h, next), Verdict::unique);
   const std::vector<Real> circle{angle, Real(cos(angle)), Real(sin(angle)), angle};
   EXPECT_LT(distance(next.q, circle), 1e-8);  // h^4 is 4e-9 (v' = 0 holds v to that order); 24 N make h^2 of it
+}
+
+/// The block slows at 1 m/s^2 and would turn back within the step. Frozen, friction goes on as it was.
+TEST(OracleMethodFriction, IsFrozenWithinALocatedStep) {
+  const Real h(0x1p-10), speed = h / 4;
+  Exact oracle(block(0.1, 0x1p-12, 0.5, 0));
+  for (const Scheme scheme : {Scheme::rk4_located, Scheme::dop853_located}) {
+    TreeState<Real> next;
+    ASSERT_EQ(oracle.method.step(scheme, oracle.start(), h, next), Verdict::unique);
+    EXPECT_LT(distance(next.v, {Real(speed - h), Real(0), Real(0)}), 1e-18);  // 0.1 and 0.3 are doubles
+  }
+}
+
+/// And by methods that do not locate the stop it is arrested at the step's end, and rests from then on. Pushed by more
+/// than friction can hold, it turns back instead.
+TEST(OracleMethodFriction, ArrestsABlockThatStopsWithinAStep) {
+  const Real h(0x1p-10);
+  for (const Scheme scheme : {Scheme::euler, Scheme::rk4}) {
+    SCOPED_TRACE(name(scheme));
+    TreeState<Real> next, later;
+    Exact oracle(block(0.1, 0x1p-12, 0.5, 0));  // a quarter of what the step takes: rk4's stages cancel
+    ASSERT_EQ(oracle.method.step(scheme, oracle.start(), h, next), Verdict::unique);
+    EXPECT_LT(size(next.v), 1e-45);
+    EXPECT_EQ(next.rests, std::vector<bool>{true});
+    ASSERT_EQ(oracle.method.step(scheme, next, h, later), Verdict::unique);
+    EXPECT_LT(distance(later.q, next.q), 1e-45);
+    Exact pushed(block(0.1, 0x1p-12, 0.5, -1.5));
+    ASSERT_EQ(pushed.method.step(scheme, pushed.start(), h, next), Verdict::unique);
+    EXPECT_LT(next.v[0], 0);
+    EXPECT_EQ(next.rests, std::vector<bool>{false});
+  }
+}
+
+/// The kernel's projection after a step, from states off the constraints: its Newton steps end within 16 eps
+/// (bodies + 1) of the largest distance, some metres here; speeds take as much of some tens of rad/s.
+TEST(OracleMethodProjection, IsTheKernels) {
+  for (const char* scene : {"squeezer", "four_bar_chain", "quick_return", "gantry"}) {
+    SCOPED_TRACE(scene);
+    const auto file = scene_file(scene);
+    const auto stepper = std::make_unique<Stepper>(file.scene);
+    stepper->stabilise = slideway::Stabilise::projection;
+    Stepper::State state = stepper->start();
+    for (int j = 0; j < stepper->source.tables.coordinates; ++j) state.q[j] += 1e-6 * (j + 1);
+    const TreeState<Real> from = exact(*stepper, state);
+    ASSERT_EQ(stepper->step(state, file.run.dt).status, Status::ok);
+    Model<Real> ungained = model_of<Real>(file.scene);
+    ungained.alpha = ungained.beta = Real(0);
+    Exact projected(ungained);
+    projected.method.projects = true;
+    TreeState<Real> truth;
+    ASSERT_EQ(projected.method.step(Scheme::rk4, from, Real(file.run.dt), truth), Verdict::unique);
+    const double left = 16 * 0x1p-52 * (file.scene.bodies + 1);
+    EXPECT_LE(distance(exact(*stepper, state).q, truth.q), 10 * left * size(truth.q));
+    EXPECT_LE(distance(exact(*stepper, state).v, truth.v), 10 * left * size(truth.v));
+    EXPECT_LT(projected.method.largest_drift(truth).position, 1e-29);
+  }
 }
 
 /// A bead on a rod that turns at 1 rad/s, 1 m out: x'' = omega^2 x, all of it from the turning.

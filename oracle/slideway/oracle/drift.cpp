@@ -99,6 +99,55 @@ Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, co
   return {{T(u * places), T(u * (speeds + gained))}, {T(u * (2 * places + place)), T(u * (2 * speeds + speed))}};
 }
 
+namespace {
+
+/// Where the kernel's projection stops: of Phi, and of Phi' by roundings of the same number.
+template <class T>
+Drift<T> projection_limit(Method<T>& method, const TreeState<T>& state) {
+  const Model<T>& model = method.dynamics().mechanism.model;
+  const T share = T(0x1p-48) * T(static_cast<int>(model.body.size()) + 1);
+  const Extent<T> at = extent(model, method.dynamics().place(state.t, state.q, state.v));
+  return {T(share * at.reach), T(share * at.speed)};
+}
+
+}  // namespace
+
+template <class T>
+Drift<T> projected_drift(Method<T>& method, const std::vector<TreeState<T>>& states) {
+  Drift<T> most{T(0), T(0)};
+  for (const TreeState<T>& state : states) {
+    const Drift<T> limit = projection_limit(method, state), noise = rounding(method, state, T(1), state).noise;
+    most = larger(most, {T(limit.position + noise.position), T(limit.velocity + noise.velocity)});
+  }
+  return most;
+}
+
+template <class T>
+Drift<T> projection_error(Method<T>& method, const std::vector<TreeState<T>>& states) {
+  using std::abs, std::sqrt;
+  Dynamics<T>& dynamics = method.dynamics();
+  const std::vector<bool> free(dynamics.mechanism.model.guide.size(), false);
+  Drift<T> most{T(0), T(0)};
+  for (const TreeState<T>& state : states) {
+    const Drift<T> limit = projection_limit(method, state);
+    dynamics.begin(dynamics.place(state.t, state.q, state.v));
+    std::vector<T> errors = dynamics.constraint_errors(false);
+    T moved(1);  // joints move by 1 where constraints do
+    for (std::size_t period = 1; period <= 2; ++period) {
+      for (std::size_t r = 0; r < errors.size(); ++r) {
+        const bool holds = r < dynamics.mechanism.joint.size() + dynamics.mechanism.law.size();  // in the tree, exactly
+        errors[r] = holds ? 0 : r / period % 2 == 0 ? 1 : -1;
+      }
+      const auto change = dynamics.least_change(errors, free);
+      if (!change) continue;
+      for (const T& x : dynamics.in_joints(*change)) moved = std::max(moved, T(abs(x)));
+    }
+    moved *= sqrt(T(static_cast<int>(errors.size())));
+    most = larger(most, {T(moved * limit.position), T(2 * moved * limit.velocity)});
+  }
+  return most;
+}
+
 template <class T>
 std::optional<Rounding<T>> largest_defect(Method<T>& method, Scheme scheme, const T& h,
                                           const std::vector<TreeState<T>>& states) {
@@ -144,6 +193,8 @@ std::optional<DriftBound<T>> drift_bound(Method<T>& method, Scheme scheme, const
 }
 
 template Rounding<Real> rounding(Method<Real>&, const TreeState<Real>&, const Real&, const TreeState<Real>&);
+template Drift<Real> projected_drift(Method<Real>&, const std::vector<TreeState<Real>>&);
+template Drift<Real> projection_error(Method<Real>&, const std::vector<TreeState<Real>>&);
 template std::optional<Rounding<Real>> largest_defect(Method<Real>&, Scheme, const Real&,
                                                       const std::vector<TreeState<Real>>&);
 template std::optional<DriftBound<Real>> drift_bound(Method<Real>&, Scheme, const Real&, long, const TreeState<Real>&,

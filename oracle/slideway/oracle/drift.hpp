@@ -45,6 +45,22 @@ Map<T> runge_kutta_map(int order, const T& h, const T& alpha, const T& beta) {
   return sum;
 }
 
+/// Of an explicit Runge-Kutta method: I + h sum b_k K_k with K_k = A (I + h sum a_kj K_j). Its stability polynomial of
+/// hA, whatever the order.
+template <class T>
+Map<T> runge_kutta_map(const RungeKutta<T>& method, const T& h, const T& alpha, const T& beta) {
+  Map<T> A, R = Map<T>::Identity();
+  A << T(0), T(1), T(-beta), T(-alpha);
+  std::vector<Map<T>> K;
+  for (std::size_t k = 0; k < method.b.size(); ++k) {
+    Map<T> stage = Map<T>::Identity();
+    for (std::size_t j = 0; j < k; ++j) stage += K[j] * T(h * method.a[k][j]);
+    K.push_back(A * stage);
+    R += K[k] * T(h * method.b[k]);
+  }
+  return R;
+}
+
 /// The kernel's euler: Phi' += h Phi'', then Phi += h Phi'. Stable for h^2 beta + 2 h alpha < 4 (Jury's conditions,
 /// with the determinant 1 - h alpha and the trace 2 - h alpha - h^2 beta).
 template <class T>
@@ -56,7 +72,8 @@ Map<T> semi_implicit_map(const T& h, const T& alpha, const T& beta) {
 
 template <class T>
 Map<T> drift_map(Scheme scheme, const T& h, const T& alpha, const T& beta) {
-  return scheme == Scheme::rk4 ? runge_kutta_map(4, h, alpha, beta) : semi_implicit_map(h, alpha, beta);
+  return scheme == Scheme::euler ? semi_implicit_map(h, alpha, beta)
+                                 : runge_kutta_map(runge_kutta<T>(scheme), h, alpha, beta);
 }
 
 /// Largest |eigenvalue|.
@@ -188,6 +205,17 @@ struct Rounding {
 ///   rotation's six and a sum), and gains and h take their part of that into Phi'.
 template <class T>
 Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to);
+
+/// What the kernel's projection leaves at any of the states, with the noise of measuring it. It stops where every |Phi|
+/// is below 16 eps (bodies + 1) times the largest distance; rates are then solved for, with as many roundings of the
+/// largest speed.
+template <class T>
+Drift<T> projected_drift(Method<T>& method, const std::vector<TreeState<T>>& states);
+
+/// And what that is in q and v: all constraints missed by it, with two patterns of signs, times the root of their
+/// number for the patterns that are not tried; v is solved for at a q that is off, which doubles it.
+template <class T>
+Drift<T> projection_error(Method<T>& method, const std::vector<TreeState<T>>& states);
 
 /// Largest defect of a step from any of the states, over all constraints, a pin's two rows as one vector: |e_1 - R e_0|
 /// with margin, and the largest rounding. Nothing if the law has no step from one of the states.

@@ -6,12 +6,13 @@
 //
 // A mode fixes, for every rough guide, slip +1 or -1 or rest 0, and for each of its contacts the sign of the contact
 // force. Then Coulomb's law is linear: a sliding guide's contact k has the friction force -slip c sign_k lambda_k, and
-// a guide at rest has an unknown friction force and the row v' = 0. Whether the mode is one that the law allows is for
-// friction.hpp to say.
+// a guide at rest has an unknown friction force and the row v' = -alpha v, which is v' = 0 where it rests, and takes
+// from it what a step has left of its speed. Whether the mode is one that the law allows is for friction.hpp to say.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <slideway/oracle/elimination.hpp>
 #include <slideway/oracle/mechanism.hpp>
 #include <vector>
@@ -56,6 +57,7 @@ class Dynamics {
   }
 
   Mechanism<T> mechanism;
+  T rest_gain{mechanism.model.alpha};  ///< alpha of v' = -alpha v at rest, 1/s: Baumgarte's
 
   int guides() const { return static_cast<int>(mechanism.model.guide.size()); }
   int contacts() const { return static_cast<int>(mechanism.normal.size()); }
@@ -86,6 +88,21 @@ class Dynamics {
   /// mass metric. False if that fails, or the constraints are redundant there.
   bool project(Motion<T>& motion, const std::vector<bool>& at_rest);
 
+  /// At the motion of begin(), in the order of the KKT system's rows: what joints, drives, pins and contacts are missed
+  /// by, or their rates.
+  Vector constraint_errors(bool of_rates) const;
+
+  /// Least change in the mass metric that takes `errors` from the constraints and their speeds from the guides in
+  /// `stops`, to first order, at the motion of begin(). A guide whose row follows from those before is left to them.
+  /// Nothing if the constraints are redundant.
+  std::optional<Vector> least_change(const Vector& errors, const std::vector<bool>& stops) const;
+
+  /// |x|, by the masses: of velocities, the root of twice their kinetic energy.
+  T size(const Vector& x) const;
+
+  /// The joints' coordinates of a Cartesian change, by the rows' first derivatives at the motion of begin().
+  Vector in_joints(const Vector& change) const;
+
   /// Begins series at a motion: positions to order 1, what depends on speeds to order 0.
   void begin(const Motion<T>& motion);
 
@@ -108,6 +125,8 @@ class Dynamics {
   /// What is left of the friction limit c Lambda + preload in the direction `side` of the friction force: a guide stays
   /// at rest while both are >= 0.
   T margin(int g, int side, int order) const { return limit(g, order) - T(side) * friction(g, order); }
+  /// Sum of the magnitudes of all forces on a body's coordinate in the solution, N | N m: what rounding is relative to.
+  T load(int component) const;
 
  private:
   using Matrix = typename Elimination<T>::Rows;
@@ -127,6 +146,7 @@ class Dynamics {
   }
   Matrix matrix() const;
   bool correct(const std::vector<const Row*>& rows, const Vector& errors, std::vector<T>& x) const;
+  std::vector<const Row*> constraint_rows() const;
   void add_row(int equation, int unknown, const Row& row, bool as_constraint);
   void add_force(int unknown, const Row& row, const T& factor);
   void assemble();
@@ -237,22 +257,12 @@ bool Dynamics<T>::correct(const std::vector<const Row*>& rows, const Vector& err
 template <class T>
 bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
   using std::abs;
-  std::vector<const Row*> rows;
-  for (const Constraint& c : constraints_) rows.push_back(c.row);
-  const auto errors = [&](bool of_rates) {
-    begin(motion);
-    Vector e;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      e.push_back(of_rates ? rows[r]->speed[0] : rows[r]->value[0]);
-      if (r >= constraints_.size() || constraints_[r].drive == none) continue;
-      e.back() -= law_[static_cast<std::size_t>(constraints_[r].drive)][of_rates ? 1 : 0];
-    }
-    return e;
-  };
+  std::vector<const Row*> rows = constraint_rows();
   constexpr int most_steps = 40;  // Newton doubles the digits: seven from 1 to 1e-50, the rest to come near
   T worst(1);
   for (int step = 0; step < most_steps && worst > 0; ++step) {
-    const Vector e = errors(false);
+    begin(motion);
+    const Vector e = constraint_errors(false);
     const T before = worst;
     worst = T(0);
     for (const T& x : e) worst = std::max(worst, T(abs(x)));
@@ -260,23 +270,95 @@ bool Dynamics<T>::project(Motion<T>& motion, const std::vector<bool>& at_rest) {
     if (!correct(rows, e, motion.position)) return false;
   }
   if (!(worst < zero_tolerance<T>())) return false;
-  std::vector<T> velocity = motion.velocity;
-  const Vector rates = errors(true);
-  if (!correct(rows, rates, velocity)) return false;
-  for (int g = 0; g < guides(); ++g) {
-    if (at_rest[static_cast<std::size_t>(g)]) rows.push_back(&sliding(g));
+  begin(motion);
+  const Vector rates = constraint_errors(true);
+  const auto free = least_change(rates, std::vector<bool>(at_rest.size(), false)), held = least_change(rates, at_rest);
+  if (!free || !held) return false;
+  // Where guides at rest nearly follow from the constraints, as at a dead centre, they would stop the whole mechanism,
+  // which only rounding of their speeds was to leave.
+  Vector velocity = motion.velocity;
+  T stopped(0), most(0);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    velocity[i] += (*free)[i];
+    motion.velocity[i] += (*held)[i];
+    stopped = std::max(stopped, T(abs(motion.velocity[i] - velocity[i])));
+    most = std::max(most, T(abs(velocity[i])));
   }
-  // More guides at rest than freedom: their rows are redundant, and the constraints alone hold them. Nearly redundant,
-  // as at a dead centre: they would stop the whole mechanism, which only rounding of their speeds was to leave.
-  const auto largest = [](const Vector& x, const Vector& from) {
-    T most(0);
-    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, T(abs(x[i] - from[i])));
-    return most;
-  };
-  const bool held = correct(rows, errors(true), motion.velocity);
-  const Vector nothing(velocity.size(), T(0));
-  if (!held || largest(motion.velocity, velocity) > T(0x1p-20) * largest(velocity, nothing)) motion.velocity = velocity;
+  if (stopped > T(0x1p-20) * most) motion.velocity = velocity;
   return true;
+}
+
+template <class T>
+std::vector<const typename Dynamics<T>::Row*> Dynamics<T>::constraint_rows() const {
+  std::vector<const Row*> rows;
+  for (const Constraint& c : constraints_) rows.push_back(c.row);
+  return rows;
+}
+
+template <class T>
+typename Dynamics<T>::Vector Dynamics<T>::constraint_errors(bool of_rates) const {
+  Vector errors;
+  for (const Constraint& c : constraints_) {
+    errors.push_back(of_rates ? c.row->speed[0] : c.row->value[0]);
+    if (c.drive != none) errors.back() -= law_[static_cast<std::size_t>(c.drive)][of_rates ? 1 : 0];
+  }
+  return errors;
+}
+
+template <class T>
+std::optional<typename Dynamics<T>::Vector> Dynamics<T>::least_change(const Vector& errors,
+                                                                      const std::vector<bool>& stops) const {
+  const Vector nothing(static_cast<std::size_t>(3 * mechanism.bodies()), T(0));
+  std::vector<const Row*> rows = constraint_rows();
+  Vector right = errors, change = nothing;
+  if (!correct(rows, right, change)) return std::nullopt;
+  for (int g = 0; g < guides(); ++g) {
+    if (!stops[static_cast<std::size_t>(g)]) continue;
+    rows.push_back(&sliding(g));
+    right.push_back(sliding(g).speed[0]);
+    Vector with_it = nothing;
+    if (correct(rows, right, with_it)) {
+      change = with_it;
+    } else {
+      rows.pop_back();
+      right.pop_back();
+    }
+  }
+  return change;
+}
+
+template <class T>
+T Dynamics<T>::size(const Vector& x) const {
+  using std::sqrt;
+  T sum(0);
+  for (std::size_t i = 0; i < x.size(); ++i) sum += mechanism.mass(static_cast<int>(i)) * x[i] * x[i];
+  return sqrt(sum);
+}
+
+template <class T>
+typename Dynamics<T>::Vector Dynamics<T>::in_joints(const Vector& change) const {
+  Vector q;
+  for (const Row& row : mechanism.coordinate) {
+    q.push_back(T(0));
+    const auto add = [&](int body, const std::array<Node, 3>& entry) {
+      for (std::size_t j = 0; body != ground && j < 3; ++j) {
+        q.back() += entry[j][0] * change[static_cast<std::size_t>(3 * body) + j];
+      }
+    };
+    add(row.a, row.on_a);
+    add(row.b, row.on_b);
+  }
+  return q;
+}
+
+template <class T>
+T Dynamics<T>::load(int component) const {
+  using std::abs;
+  T sum = abs(mechanism.force[static_cast<std::size_t>(component)][0]);
+  for (const Entry& e : entries_) {
+    if (e.row == component && e.column != component) sum += abs(e.weight * e.node[0] * unknown(e.column, 0));
+  }
+  return sum;
 }
 
 template <class T>
@@ -430,7 +512,7 @@ typename Dynamics<T>::Vector Dynamics<T>::right_side(int k) const {
   }
   for (int g = 0; g < guides(); ++g) {
     const Row& row = sliding(g);
-    if (stuck(g)) b[equation++] = -row.turning[k];
+    if (stuck(g)) b[equation++] = -(row.turning[k] + rest_gain * row.speed[k]);
     const T steady = applied(g) - T(mode_.slip[static_cast<std::size_t>(g)]) * guide(g).preload;
     if (steady == 0) continue;
     for (std::size_t j = 0; j < 3; ++j) {

@@ -12,6 +12,10 @@
 
 namespace slideway::oracle {
 
+/// Relative sliding speed below which a guide is at rest, in a state that comes in doubles: some thousand of their
+/// roundings. Dimensionless.
+inline constexpr double rest_in_doubles = 0x1p-40;
+
 enum class Verdict {
   unique,
   motion_only,  ///< one motion, several sets of forces: one of them is given
@@ -72,6 +76,11 @@ class FrictionLaw {
   /// When one has left, others may follow or it may be held after all: repeated until no guide joins. Rest is
   /// preferred.
   Decision<T> decide(const Motion<T>& motion, const std::vector<bool>& at_rest);
+
+  /// Of a motion that was rounded to doubles. Where guides at rest outnumber the freedom, their rows and those of the
+  /// constraints contradict each other by that rounding: there the law is asked of the motion moved onto the
+  /// constraints, guides at rest at speed zero. Not without loads: that rounding is then all there is.
+  Decision<T> decide_rounded(const Motion<T>& motion, const std::vector<bool>& at_rest);
 
   /// Modes of an instant, at most most_modes + 1.
   int count(const std::vector<bool>& at_rest, const Coefficients<T>& mu) const;
@@ -510,6 +519,20 @@ Decision<T> FrictionLaw<T>::decide(const Motion<T>& motion, const std::vector<bo
     }
   }
   return decision;
+}
+
+template <class T>
+Decision<T> FrictionLaw<T>::decide_rounded(const Motion<T>& motion, const std::vector<bool>& at_rest) {
+  const bool rests = std::find(at_rest.begin(), at_rest.end(), true) != at_rest.end();
+  dynamics_.begin(motion);
+  const Coefficients<T> none(at_rest.size(), T(0));
+  if (!rests || largest_load() == 0 || dynamics_.solve(first_mode(at_rest), none)) return decide(motion, at_rest);
+  Motion<T> exact = motion;
+  if (!dynamics_.project(exact, std::vector<bool>(at_rest.size(), false))) return decide(motion, at_rest);
+  dynamics_.begin(exact);
+  const auto stopping = dynamics_.least_change(dynamics_.constraint_errors(true), at_rest);
+  for (std::size_t i = 0; stopping && i < stopping->size(); ++i) exact.velocity[i] += (*stopping)[i];
+  return decide(exact, at_rest);
 }
 
 extern template class FrictionLaw<Real>;

@@ -30,6 +30,7 @@ struct Instant {
   T energy, work, dissipated;                         ///< J; the flows since the start
   T kinetic;                                          ///< J
   Mode mode;                                          ///< slip 0: at rest
+  bool chosen;  ///< guides at rest outnumber the freedom: these forces are one of several sets for the same motion
 };
 
 /// Why a trajectory ended.
@@ -47,9 +48,8 @@ struct Trajectory {
 };
 
 struct TrajectoryOptions {
-  int digits = 36;        ///< of truncation, relative to each step
-  double step = 1;        ///< factor on the step: a second run with another one must agree
-  double rest = 0x1p-40;  ///< relative speed below which a guide counts as at rest at the start
+  int digits = 36;  ///< of truncation, relative to each step
+  double step = 1;  ///< factor on the step: a second run with another one must agree
   int most_events = 100000;
   std::function<void(double)> progress = [](double) {};  ///< called with the time reached
 };
@@ -58,7 +58,9 @@ template <class T>
 class Integrator {
  public:
   Integrator(const Model<T>& model, const TrajectoryOptions& options)
-      : options_(options), order_(order_for(options.digits)), dynamics_(model, order_ + 2), law_(dynamics_) {}
+      : options_(options), order_(order_for(options.digits)), dynamics_(model, order_ + 2), law_(dynamics_) {
+    dynamics_.rest_gain = T(0);  // no speed is left here, and exp(-alpha t) of rounding would cost digits
+  }
 
   /// From the model's start, moved onto the constraints, over `duration`; `times` ascend within it.
   Trajectory<T> run(const T& duration, const std::vector<T>& times);
@@ -94,6 +96,7 @@ class Integrator {
   Motion<T> motion_;
   std::vector<bool> at_rest_;  ///< guides
   Mode mode_;                  ///< of the law: a guide at rest at its limit has a slip
+  bool chosen_ = false;        ///< forces are a choice
   Coefficients<T> mu_;
   T work_{}, dissipated_{};
   std::vector<T> work_power_, dissipated_power_;  ///< series
@@ -159,7 +162,7 @@ template <class T>
 bool Integrator<T>::begin() {
   const Model<T>& model = dynamics_.mechanism.model;
   motion_ = dynamics_.place(T(0), model.start.q, model.start.v);
-  at_rest_ = law_.find_at_rest(motion_, T(options_.rest));
+  at_rest_ = law_.find_at_rest(motion_, T(rest_in_doubles));
   if (!dynamics_.project(motion_, at_rest_)) {
     result_.end = End::start_off_constraints;
     return false;
@@ -178,6 +181,7 @@ bool Integrator<T>::decide() {
   if (decision.verdict == Verdict::undecided) result_.end = End::undecided;
   if (result_.end != End::duration) return false;
   mode_ = decision.solutions.front().mode;
+  chosen_ = decision.verdict == Verdict::motion_only;
   at_rest_ = decision.solutions.front().at_rest;
   mu_ = decision.mu;
   dynamics_.begin(motion_);
@@ -352,6 +356,7 @@ Instant<T> Integrator<T>::instant(const T& tau) const {
   now.work = work_ + integral(work_power_, tau);
   now.dissipated = dissipated_ + integral(dissipated_power_, tau);
   now.mode = shown_mode();
+  now.chosen = chosen_;
   return now;
 }
 
