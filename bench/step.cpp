@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <slideway/io/scene_file.hpp>
+#include <slideway/io/stepper.hpp>
 #include <slideway/scenes/crank_rocker.hpp>
 #include <slideway/scenes/crank_rocker_offset.hpp>
 #include <slideway/scenes/v_engine_16.hpp>
@@ -24,7 +25,6 @@
 #include <slideway/scenes/v_engine_4.hpp>
 #include <slideway/scenes/v_engine_8.hpp>
 #include <slideway/self_test.hpp>
-#include <slideway/io/stepper.hpp>
 #include <string>
 #include <vector>
 

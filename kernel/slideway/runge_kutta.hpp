@@ -114,7 +114,7 @@ class Stages {
   template <int k, class Sequence>
   void combine(const Source& source, double h, const Phase<Size>& from, Phase<Size>& at, Sequence all) const noexcept {
     constexpr bool last = k == count;
-    constexpr int row = last ? 0 : k;
+    constexpr int row = k % count;
     constexpr const auto& of_v = last ? tableau.b : tableau.a[row];
     constexpr const auto& of_q = last ? tableau.ba : tableau.aa[row];
     constexpr double c = last ? 1 : tableau.c[row];
