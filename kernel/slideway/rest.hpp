@@ -30,9 +30,9 @@ class RestProblem : public JammedGuides<Source> {
   using Base::solve_in_mode;
   using typename Base::Size;
 
-  /// Modes of the guides that were added, contact signs, and what holds. `from`: their modes before; a guide with a
-  /// mode other than 0 keeps it if it gains speed that way. mu_static has decided who leaves, mu acts on those that do:
-  /// solved again until no guide joins them (at most guides + 1 rounds), or turns back (as many).
+  /// Modes of the guides that were added, contact signs, and which rows hold; m in and out. A guide that comes with a
+  /// mode other than 0 keeps it if it gains speed that way. mu_static decides who leaves, mu acts on those that do:
+  /// solved again until no guide joins them (at most guides + 1 rounds) or turns back (as many).
   Status decide(Modes<Size>& m, Report& report) noexcept {
     span_contacts();
     find_determined(m);
