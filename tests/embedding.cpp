@@ -1,20 +1,13 @@
 // docs/embedding.md's example is the program that tests/embedded compiles and runs, and its ladder has every status.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <slideway/self_test.hpp>
-#include <sstream>
 #include <string>
+#include <support/text.hpp>
 
 namespace {
 
-std::string text_of(const std::string& file) {
-  std::ifstream in(std::string(SLIDEWAY_SOURCE_DIR "/") + file);
-  EXPECT_TRUE(in) << file;
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using slideway::test::text_of;
 
 TEST(Embedding, ExampleIsTheProgramThatIsCompiled) {
   const std::string page = text_of("docs/embedding.md"), program = text_of("tests/embedded/recovery.cpp");

@@ -2,19 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <string>
+#include <support/text.hpp>
 
 namespace {
 
-std::string text_of(const std::string& file) {
-  std::ifstream in(std::string(SLIDEWAY_SOURCE_DIR "/") + file);
-  EXPECT_TRUE(in) << file;
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using slideway::test::text_of;
 
 TEST(Readme, ExampleIsTheProgramThatIsCompiled) {
   const std::string readme = text_of("README.md"), program = text_of("tests/embedded/readme.cpp");

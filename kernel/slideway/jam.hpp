@@ -131,11 +131,9 @@ class JammedGuides : public RestEquations<Source> {
       respond(parameter[p]);
       keep(x[p + 1]);
     }
-    Search search;
-    search.dimension = parameters;
-    if (parameters == 0) return meets(m, x, parameter, size, search);
+    if (parameters == 0) return meets(m, x, parameter, size);
     double s[n_guides] = {};
-    if (!least_stiction(m, x, parameter, parameters, size, search, s)) return false;
+    if (!least_stiction(m, x, parameter, parameters, size, s)) return false;
     for (int p = 0; p < parameters; ++p) m.stiction[parameter[p]] = s[p];
     return true;
   }
@@ -210,7 +208,7 @@ class JammedGuides : public RestEquations<Source> {
   }
 
   /// Without parameters: are all conditions met, to rounding?
-  bool meets(const Modes<Size>& m, const double (*x)[order], const int* parameter, double size, Search&) noexcept {
+  bool meets(const Modes<Size>& m, const double (*x)[order], const int* parameter, double size) noexcept {
     bool good = true;
     each_condition(m, x, parameter, 0, size, [&](const double* row, double least) {
       good = good && row[0] >= (least > 0 ? least : -4 * rank_bound(source_) * size);
@@ -221,10 +219,12 @@ class JammedGuides : public RestEquations<Source> {
   /// s of least sum of squares of all stiction forces. With F = F_0 + B s of the bound guides that is
   /// |s|^2 + |F_0 + B s|^2 = |R (s - s_0)|^2 + const, R'R = I + B'B: the shortest z = R (s - s_0) / size is sought.
   bool least_stiction(const Modes<Size>& m, const double (*x)[order], const int* parameter, int parameters, double size,
-                      Search& search, double* s) noexcept {
+                      double* s) noexcept {
+    Search search;
+    search.dimension = parameters;
     SLIDEWAY_ASSUME(parameters <= n_guides);
     const int n = table_.rough;
-    double R[n_guides][n_guides], s_0[n_guides];
+    double R[n_guides][n_guides] = {}, s_0[n_guides] = {};
     for (int p = 0; p < parameters; ++p) {
       s_0[p] = 0;
       for (int h = 0; h < bound_count_; ++h) s_0[p] -= x[p + 1][n + h] * x[0][n + h];
