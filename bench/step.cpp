@@ -4,7 +4,7 @@
 //
 //     step [Google Benchmark's options]
 //     step --ratio                 medians of interleaved runs, and their ratios
-//     step --count SIDE N          N steps and a checksum, for callgrind (bench/count)
+//     step --count SIDE N          N steps, their events and a checksum, for callgrind (bench/count)
 //     step --memory                bytes of the compile-time crank_rocker
 //
 // All sides see the same states: a mechanism is let go at its start again every `restart` steps.
@@ -60,10 +60,13 @@ class Run {
       k_ = 0;
       state_ = start_;
     }
-    ok_ = stepper_.step(state_, dt_).status == slideway::Status::ok && ok_;
+    const slideway::Report report = stepper_.step(state_, dt_);
+    ok_ = report.status == slideway::Status::ok && ok_;
+    events_ += report.events + report.unlocated_events;
     ++k_;
   }
   bool ok() const { return ok_; }
+  int events() const { return events_; }
   double checksum() const { return state_.q[0] + state_.v[0]; }
 
  private:
@@ -71,7 +74,7 @@ class Run {
   double dt_;
   int restart_;
   typename Stepper::State start_, state_;
-  int k_ = 0;
+  int k_ = 0, events_ = 0;
   bool ok_ = true;
 };
 
@@ -88,6 +91,7 @@ class Floor {
     ++k_;
   }
   bool ok() const { return ok_; }
+  int events() const { return 0; }  // of none it knows
   double checksum() const { return state_.q[0] + state_.v[0]; }
 
   static constexpr double dt = 1e-3;
@@ -139,7 +143,7 @@ int count(const std::string& side, long steps) {
   for_each_side([&](const std::string& name, auto run) {
     if (name != side) return;
     for (long k = 0; k < steps; ++k) run.step();
-    std::printf("%s: %ld steps, checksum %a\n", name.c_str(), steps, run.checksum());
+    std::printf("%s: %ld steps, %d events, checksum %a\n", name.c_str(), steps, run.events(), run.checksum());
     result = run.ok() ? 0 : 1;
   });
   if (result == 2) std::fprintf(stderr, "no side '%s'\n", side.c_str());

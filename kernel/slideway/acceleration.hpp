@@ -250,30 +250,28 @@ SLIDEWAY_INLINE Status press(const Source& source, Aim aim, const Solving& solvi
   return Status::ok;
 }
 
-/// q'', contact forces, friction, pin and drive forces at (t, q, v), checked (WWZ14 (10)-(19)).
-///
-/// m, in and out: modes and contact signs, first guesses and then the answer's, unless they are to be followed. r is
-/// valid only when the status is ok. `report` keeps the extremes of all calls. Cost: one HLCP (follow: one linear
-/// solve) and O(bodies + contacts^2); with guides at rest, up to 2 guides + 2 larger HLCPs.
-template <class Source, class Size = typename Source::Size>
-Status accelerate(const Source& source, const Moment<Size>& at, const Solving& solving, Modes<Size>& m,
-                  Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
+/// accelerate() without guides at rest, or with. Two functions, because what holds a guide at rest is not inlined, and
+/// what it may see cannot be kept in registers. The first gives up, and says so, where it finds a guide at rest.
+template <bool all_slip, class Source, class Size = typename Source::Size>
+[[gnu::noinline]] Status evaluate(const Source& source, const Moment<Size>& at, const Solving& solving, Modes<Size>& m,
+                                  Reaction<Size>& __restrict r, Report& __restrict report, bool& any_rests) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
   Work<Size> w;
   // Apart from `w`: what a call that is not inlined may see is not kept in registers.
   Problem<Size> hlcp;
-  ++report.evaluations;
+  SLIDEWAY_ASSUME(!all_slip || at.aim != Aim::impulse);
   place(source, at, solving, w, r);
   bool rests[at_least_one(Size::guides)];
-  const bool any_rests = find_rest(source, w, at, m, r, rests);
+  any_rests = find_rest(source, w, at, m, r, rests);
+  if (all_slip && any_rests) return Status::ok;
   signed char slips[at_least_one(Size::guides)];
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD { slips[g] = rests[g] ? 0 : m.mode[g]; });
   apply_forces(source, w.kinematics, at.inputs, at.tau, w.dynamics);
   apply_steady_friction(source, slips, w.friction, w.dynamics);
   gather(source, w.kinematics, w.dynamics);
   if (!factor_mass(source, w.kinematics, at.q, at.v, w.dynamics)) return Status::singular_constraints;
-  if (at.aim == Aim::impulse) place_ahead(source, at, solving, w, r);
+  if (!all_slip && at.aim == Aim::impulse) place_ahead(source, at, solving, w, r);
   if (!assemble(source, w.kinematics, w.dynamics, solving.gains, slips, w.friction, r, hlcp)) {
     return Status::singular_constraints;
   }
@@ -283,8 +281,12 @@ Status accelerate(const Source& source, const Moment<Size>& at, const Solving& s
                                    [&](int i) SLIDEWAY_FOLD { signs[i] = m.sign[table.rough_contact[i]]; });
   const bool any_rough = table.rough > 0;  // known to the compiler, for a scene that is
   if (any_rough) {
-    const Status status = any_rests ? hold(source, at, solving, rests, w, hlcp, m, r, report)
-                                    : press(source, at.aim, solving, hlcp, m, w.friction, r, report);
+    Status status;
+    if constexpr (all_slip) {
+      status = press(source, at.aim, solving, hlcp, m, w.friction, r, report);
+    } else {
+      status = hold(source, at, solving, rests, w, hlcp, m, r, report);
+    }
     if (status != Status::ok) return status;
   }
   resolve(source, r, w);
@@ -293,11 +295,12 @@ Status accelerate(const Source& source, const Moment<Size>& at, const Solving& s
   });
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD { r.pin[p] = {w.pi[2 * p], w.pi[2 * p + 1]}; });
   if (!resolved(source, w)) return Status::singular_constraints;
+  m.rounding = rank_bound(source) * w.scale;
   for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
-    const int c = table.rough_contact[i], g = table.guide_of[c];
-    m.noise[c] = rank_bound(source) * w.scale / w.friction.norm[i];
-    if (m.decided && std::fabs(r.lambda[c]) <= m.noise[c]) m.sign[c] = signs[i];  // rounding has no face of its own
-    if (c == table.first_contact[g]) m.motion_noise[g] = rank_bound(source) * w.scale * w.friction.norm[i];
+    const int c = table.rough_contact[i];
+    m.norm[c] = w.friction.norm[i];
+    // Rounding has no face of its own.
+    if (m.decided && std::fabs(r.lambda[c]) * m.norm[c] <= m.rounding) m.sign[c] = signs[i];
   });
   from_metric(source, w.dynamics, w.u);
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
@@ -308,7 +311,7 @@ Status accelerate(const Source& source, const Moment<Size>& at, const Solving& s
                                  [&](int g) SLIDEWAY_FOLD { w.friction.held[g] = rests[g] && m.mode[g] == 0; });
   const bool opposes = rub(source, w.friction, rests, r) || at.aim == Aim::follow;
   double residual = check(source, w, r);
-  if (at.aim == Aim::impulse) {
+  if (!all_slip && at.aim == Aim::impulse) {
     place_at_end(source, at, solving, w, r);
   } else {
     measure_power(source, at.v, w, r);
@@ -321,6 +324,23 @@ Status accelerate(const Source& source, const Moment<Size>& at, const Solving& s
     report.drift_velocity = r.drift_velocity;
   }
   return opposes && residual <= residual_bound(source) ? Status::ok : Status::inaccurate;
+}
+
+/// q'', contact forces, friction, pin and drive forces at (t, q, v), checked (WWZ14 (10)-(19)).
+///
+/// m, in and out: modes and contact signs, first guesses and then the answer's, unless they are to be followed. r is
+/// valid only when the status is ok. `report` keeps the extremes of all calls. Cost: one HLCP (follow: one linear
+/// solve) and O(bodies + contacts^2); with guides at rest, up to 2 guides + 2 larger HLCPs.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE Status accelerate(const Source& source, const Moment<Size>& at, const Solving& solving, Modes<Size>& m,
+                                  Reaction<Size>& __restrict r, Report& __restrict report) noexcept {
+  ++report.evaluations;
+  bool any_rests = at.aim == Aim::impulse;
+  if (!any_rests) {
+    const Status status = evaluate<true>(source, at, solving, m, r, report, any_rests);
+    if (!any_rests) return status;
+  }
+  return evaluate<false>(source, at, solving, m, r, report, any_rests);
 }
 
 }  // namespace slideway

@@ -108,7 +108,7 @@ class LocatedStep {
       const int c = source_.tables.rough_contact[i], g = source_.tables.guide_of[c];
       const Guide& guide = source_.scene.guide[g];
       watched_[c] = m.mode[g] != 0 ? guide.mu > 0 : guide.mu_static > 0 && !jammed_;
-      noise_[c] = m.noise[c];
+      noise_[c] = m.noise(c);
     });
     m.decided = true;
     for_each<Source, Size::guides>(source_.scene.guides, [&](int g) SLIDEWAY_FOLD {
@@ -116,7 +116,7 @@ class LocatedStep {
       watched_[n_contacts + g] = m.mode[g] != 0 || !jammed_;
       const int c = source_.tables.first_contact[g];
       noise_[n_contacts + g] = 8 * detail::epsilon * std::fabs(first_.slip[g]);
-      if (m.mode[g] == 0) noise_[n_contacts + g] = (1 + source_.scene.guide[g].mu_static) * 2 * m.noise[c];
+      if (m.mode[g] == 0) noise_[n_contacts + g] = (1 + source_.scene.guide[g].mu_static) * 2 * m.noise(c);
     });
     each_watched([&](int i) SLIDEWAY_FOLD {
       start_.of[i] = value(i, m, first_);
@@ -134,7 +134,8 @@ class LocatedStep {
     });
     for_each<Source, Size::guides>(source_.scene.guides, [&](int g) SLIDEWAY_FOLD {
       if (!source_.tables.is_rough[g] || m.mode[g] == 0) return;
-      noise_[n_contacts + g] = 8 * detail::epsilon * std::fabs(first_.slip[g]) + s * m.motion_noise[g];
+      noise_[n_contacts + g] =
+          8 * detail::epsilon * std::fabs(first_.slip[g]) + s * m.motion_noise(source_.tables.first_contact[g]);
     });
     Modes<Size> frozen = m;
     return stages_.run(
@@ -193,7 +194,12 @@ class LocatedStep {
     probe.s = s;
     probe.to = stages_.to;
     probe.flow = stages_.flow;
+    Report& report = setting_.report;
+    const Uniqueness uniqueness = report.uniqueness;
+    const int guide = report.guide;
     const Status status = setting_.evaluate(done + s, probe.to, jammed_ ? Aim::decide : Aim::follow, false, ends, r);
+    report.uniqueness = uniqueness;  // of what is decided there, the next round speaks
+    report.guide = guide;
     probe.value.of[jam] = 1;
     if (jammed_) {
       bool same = status == Status::ok;

@@ -143,7 +143,8 @@ template <int Capacity>
 /// (the determinant of every matrix between A+ and A- is between them, so |W^-1| R <= 2^20); then one trial if the
 /// signs were right.
 template <int Capacity>
-inline void solve_pair(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
+[[gnu::always_inline]] inline void solve_pair(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution,
+                                              HlcpOptions options) noexcept {
   const Word negative0 = mask_of(solution.sign[0]);
   const Word negative1 = mask_of(solution.sign[1]);
   const Pair sizes = row_sizes(problem);

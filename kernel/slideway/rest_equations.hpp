@@ -24,8 +24,13 @@ struct Modes {
   bool bound[n_guides];         ///< at rest, and its row is imposed: it does not follow from others
   double stiction[n_guides];    ///< of a guide at rest that is not bound: its share of the friction, N
   double limit_left[n_guides];  ///< of a guide at rest: static limit less |friction|, N
-  double noise[at_least_one(Size::contacts)];  ///< rounding of each contact force, N
-  double motion_noise[n_guides];               ///< and of each v', m/s^2
+  double rounding;              ///< of the sum that u = G q'' is
+  double norm[at_least_one(Size::contacts)];  ///< |N~| of each rough contact
+
+  /// Rounding of a contact force, N.
+  constexpr double noise(int c) const noexcept { return rounding / norm[c]; }
+  /// And of the v' of a guide whose first contact is c, m/s^2.
+  constexpr double motion_noise(int c) const noexcept { return rounding * norm[c]; }
 };
 
 /// Guides whose sliding speed is zero at one instant, the `set`: their rows beside those of the contacts, and the

@@ -22,8 +22,8 @@ struct Setting {
   Report& report;
 
   /// accelerate() at `tau` after the step's start.
-  Status evaluate(double tau, const Phase<Size>& at, Aim aim, bool at_start, Modes<Size>& m,
-                  Reaction<Size>& r) const noexcept {
+  SLIDEWAY_INLINE Status evaluate(double tau, const Phase<Size>& at, Aim aim, bool at_start, Modes<Size>& m,
+                                  Reaction<Size>& r) const noexcept {
     return accelerate(source, Moment<Size>{t + tau, tau, at.q, at.v, inputs, aim, at_start}, solving, m, r, report);
   }
 };

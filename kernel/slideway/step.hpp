@@ -224,16 +224,22 @@ class BasicStepper : public Solving {
       if (back[g] != 0) m.mode[g] = back[g];
     }
     Reaction r;
-    if (setting.evaluate(h, at_rest, Aim::decide, false, held, r) != Status::ok) return;
+    const Uniqueness uniqueness = setting.report.uniqueness;
+    const int guide = setting.report.guide;
+    const Status status = setting.evaluate(h, at_rest, Aim::decide, false, held, r);
     bool all = true, none_sticks = true;
-    for (int g = 0; g < source.scene.guides; ++g) {
+    for (int g = 0; g < source.scene.guides && status == Status::ok; ++g) {
       if (moves[g] != 0) continue;
       if (held.mode[g] == 0) m.mode[g] = 0;
       all = all && held.mode[g] == 0;
       none_sticks = none_sticks && held.mode[g] != 0;
       if (held.mode[g] != 0) moves[g] = 1;
     }
-    if (none_sticks) return;
+    if (none_sticks) {  // what was asked there decides nothing
+      setting.report.uniqueness = uniqueness;
+      setting.report.guide = guide;
+      return;
+    }
     if (!all) {
       at_rest = y;
       Projection<Source>(source, setting.inputs, h, at_rest.q, at_rest.v).arrest(moves, 2, reach);
