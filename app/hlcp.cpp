@@ -3,16 +3,18 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <slideway/hlcp.hpp>
 #include <slideway/io/json.hpp>
+#include <slideway/properties/hlcp_shrink.hpp>
 
-#include "hlcp_check.hpp"
+#include "hlcp_problem.hpp"
 #include "messages.hpp"
 #include "output.hpp"
 #include "verbs.hpp"
 
 namespace slideway::app {
 namespace {
+
+using properties::describe, properties::HlcpCase, properties::HlcpCheck;
 
 /// Fractions beyond this length are of no use to a reader.
 constexpr std::size_t longest_fraction = 24;
@@ -47,7 +49,7 @@ void add_exact(Table& table, const HlcpCheck& check, const std::vector<oracle::E
     if (list.size() > 1 || title[0] == 'v') table.row("", "", fmt::format("{} {} of {}", title, s + 1, list.size()));
     for (std::size_t k = 0; k < list[s].size(); ++k) {
       const bool both = static_cast<int>(s) == beside;
-      table.row(fmt::format("x[{}]", k), both ? fmt::format("{:.17g}", check.kernel.x[k]) : "",
+      table.row(fmt::format("x[{}]", k), both ? fmt::format("{:.17g}", check.answer.x[k]) : "",
                 exact_number(list[s][k]));
     }
   }
@@ -55,7 +57,7 @@ void add_exact(Table& table, const HlcpCheck& check, const std::vector<oracle::E
 }
 
 void add_kernel(Table& table, const HlcpProblem& problem, const HlcpCheck& check) {
-  for (int k = 0; k < problem.n; ++k) table.row(fmt::format("x[{}]", k), fmt::format("{:.17g}", check.kernel.x[k]), "");
+  for (int k = 0; k < problem.n; ++k) table.row(fmt::format("x[{}]", k), fmt::format("{:.17g}", check.answer.x[k]), "");
 }
 
 double digits(const HlcpCheck& check) { return -std::log10(check.distance); }
@@ -66,14 +68,14 @@ std::string table_of(const HlcpProblem& problem, const HlcpCheck& check) {
              fmt::format("{}: {} of order {}", problem.file,
                          problem.is_lcp ? "LCP w - M z = q, x = w - z," : "HLCP A+ x+ - A- x- = b", problem.n));
   table.row("", "kernel", "exact");
-  table.row("answer", name(check.kernel.status), check.exact ? describe(*check.exact) : "not sought");
-  table.row("uniqueness", name(check.kernel.uniqueness),
+  table.row("answer", name(check.answer.status), check.exact ? describe(*check.exact) : "not sought");
+  table.row("uniqueness", name(check.answer.uniqueness),
             !check.exact              ? ""
             : check.exact->w_property ? "W-property holds"
                                       : "W-property does not hold");
-  table.row("solves", fmt::format("{}", check.kernel.solves), "");
+  table.row("solves", fmt::format("{}", check.answer.solves), "");
   if (check.solved())
-    table.row("residual", fmt::format("{:.3g}", check.kernel.residual),
+    table.row("residual", fmt::format("{:.3g}", check.answer.residual),
               fmt::format("{:.3g} of this x", check.residual));
   const bool beside = check.nearest >= 0 && check.nearest < 8;
   if (check.solved() && !beside) add_kernel(table, problem, check);
@@ -105,12 +107,12 @@ template <class Part>
 io::Json vector_of(const HlcpProblem& problem, const HlcpCheck& check, Part part) {
   if (!check.solved()) return nullptr;
   io::Json list = io::Json::array();
-  for (int k = 0; k < problem.n; ++k) list.push_back(part(check.kernel.x[k]));
+  for (int k = 0; k < problem.n; ++k) list.push_back(part(check.answer.x[k]));
   return list;
 }
 
 io::Json document_of(const HlcpProblem& problem, const HlcpCheck& check) {
-  const auto& kernel = check.kernel;
+  const auto& kernel = check.answer;
   io::Json json{{"format", io::json_format},
                 {"version", SLIDEWAY_VERSION},
                 {"problem", problem.file},
@@ -130,13 +132,24 @@ io::Json document_of(const HlcpProblem& problem, const HlcpCheck& check) {
   json["solutions"] = check.exact ? solutions_of(check.exact->isolated) : io::Json(nullptr);
   json["continuum"] = check.exact ? io::Json(!check.exact->continuum.empty()) : io::Json(nullptr);
   json["distance"] = check.nearest >= 0 ? io::Json(check.distance) : io::Json(nullptr);
-  json["agree"] = check.agree;
+  json["agree"] = check.agree();
   json["verdict"] = check.verdict;
   return json;
 }
 
+/// A smaller problem with the same answer and the same verdict.
+HlcpCase smaller(const HlcpProblem& problem, const HlcpCheck& check) {
+  return shrink(HlcpCase(problem), [&](const HlcpCase& tried) {
+    const properties::HlcpAnswer answer = kernel_answer(tried);
+    if (answer.status != check.answer.status || answer.uniqueness != check.answer.uniqueness) return false;
+    const HlcpCheck other = check_hlcp(tried, answer);
+    return other.judgement == check.judgement &&
+           (!check.exact || !other.exact || other.exact->count() == check.exact->count());
+  });
+}
+
 struct HlcpCommand {
-  std::string problem, json;
+  std::string problem, json, shrink;
 };
 
 bool is_same_file(const std::string& a, const std::string& b) {
@@ -151,15 +164,18 @@ int hlcp(const HlcpCommand& command) {
     complain("{}: is the problem itself: write to another file", command.json);
     return bad_input;
   }
-  Output json(command.json);
-  if (!open_all({&json}, "")) return bad_input;
-  HlcpKernel kernel = {};
-  slideway::solve(problem->data, problem->n, kernel);
-  const HlcpCheck check = check_hlcp(*problem, kernel);
-  fmt::print(json.standard() ? stderr : stdout, "{}", table_of(*problem, check));
+  if (is_same_file(command.shrink, command.problem)) {
+    complain("{}: is the problem itself: write to another file", command.shrink);
+    return bad_input;
+  }
+  Output json(command.json), shrunk(command.shrink);
+  if (!open_all({&json, &shrunk}, "")) return bad_input;
+  const HlcpCheck check = check_hlcp(*problem, properties::kernel_answer(*problem));
+  fmt::print(json.standard() || shrunk.standard() ? stderr : stdout, "{}", table_of(*problem, check));
   json.write(io::text(document_of(*problem, check)));
-  if (!json.close()) return bad_input;
-  return check.agree ? good : refused;
+  if (shrunk.wanted()) shrunk.write(properties::json(smaller(*problem, check)) + "\n");
+  if (!json.close() || !shrunk.close()) return bad_input;
+  return check.agree() ? good : refused;
 }
 
 }  // namespace
@@ -172,6 +188,9 @@ void add_hlcp(CLI::App& command, int& status) {
                    "JSON with A_plus, A_minus, b or with M, q; a Siconos LCP file; - for standard input")
       ->required();
   verb->add_option("--json", options->json, "Write the answers as JSON; - is standard output");
+  verb->add_option(
+      "--shrink", options->shrink,
+      "Write the smallest problem found that has the same answer and verdict, as JSON; - is standard output");
   verb->callback([options, &status] { status = hlcp(*options); });
 }
 

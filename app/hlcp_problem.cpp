@@ -19,6 +19,7 @@ using nlohmann::json;
 using Row = std::vector<double>;
 
 constexpr std::size_t most_bytes = std::size_t{1} << 20;  // order 64 needs a fifth of it
+constexpr std::size_t most_of_error = 200;                // of a parser's, which quotes what it read
 
 constexpr const char* forms =
     R"(write {"A_plus": [[..]], "A_minus": [[..]], "b": [..]} or, for w - M z = q, {"M": [[..]], "q": [..]})";
@@ -68,7 +69,7 @@ json parse(const std::string& text) {
     const std::string what = error.what();
     const std::size_t words = what.find("syntax error");
     refuse_line(1 + std::count(text.begin(), end, '\n'), "is not JSON: {}",
-                words == what.npos ? "it cannot be parsed" : what.substr(words));
+                words == what.npos ? "it cannot be parsed" : io::printable(what.substr(words), most_of_error));
   } catch (const json::out_of_range&) {
     refuse("has a number beyond the range of doubles, 1.8e308");
   }
@@ -209,22 +210,27 @@ bool is_siconos(const std::string& file, const std::string& text) {
 
 }  // namespace
 
+HlcpReading parse_hlcp(const std::string& text, const std::string& file) {
+  HlcpReading reading{HlcpProblem{}, ""};
+  reading.problem->file = file;
+  reading.problem->hash = io::fnv1a(text);
+  try {
+    is_siconos(file, text) ? read_siconos(text, *reading.problem) : read_json(text, *reading.problem);
+  } catch (const Defect& defect) {
+    return {std::nullopt, file + defect.what()};
+  }
+  return reading;
+}
+
 std::optional<HlcpProblem> read_hlcp(const std::string& file) {
   const io::FileText read = io::read_text(file, most_bytes);
   if (!read.problem.empty()) {
     complain("{}: {}", file, read.problem);
     return std::nullopt;
   }
-  std::optional<HlcpProblem> problem{std::in_place};
-  problem->file = file;
-  problem->hash = io::fnv1a(read.text);
-  try {
-    is_siconos(file, read.text) ? read_siconos(read.text, *problem) : read_json(read.text, *problem);
-  } catch (const Defect& defect) {
-    complain("{}{}", file, defect.what());
-    return std::nullopt;
-  }
-  return problem;
+  HlcpReading reading = parse_hlcp(read.text, file);
+  if (!reading.problem) complain(reading.defect);
+  return std::move(reading.problem);
 }
 
 }  // namespace slideway::app

@@ -1,7 +1,7 @@
 // slideway hlcp: answers, exit status, documents, and what it says of bad problems.
 #include <vector>
 
-#include "hlcp_check.hpp"  // the command's own judgement, with answers that the kernel does not give
+#include "hlcp_problem.hpp"  // the command's own judgement, with answers that the kernel does not give
 #include "support/command.hpp"
 
 namespace {
@@ -116,6 +116,22 @@ TEST_F(HlcpCommand, AgreesThatThereIsAContinuum) {
   EXPECT_NE(hlcp(shipped("line.json")).out.find("vertex 2 of 2\n"), std::string::npos);
 }
 
+/// Two solutions of one unknown among three: the other two go, and the numbers become short.
+TEST_F(HlcpCommand, MakesAProblemSmallThatHasTheSameVerdict) {
+  std::ofstream(tmp / "large.json") << R"({"A_plus": [[3.1, 0.2, 0.1], [0.3, -1.234, 0], [0.1, 0, 2.7]],
+      "A_minus": [[2.9, 0.1, 0], [0.2, 5.678, 0.1], [0, 0.1, 2.2]], "b": [0.5, -1.03, 0.25]})";
+  const Result large = hlcp("large.json --shrink small.json");
+  EXPECT_EQ(large.status, 0) << large.err;
+  EXPECT_NE(large.out.find("agree: 2 solutions"), std::string::npos) << large.out;
+  const json small = json::parse(read(tmp / "small.json"));
+  EXPECT_EQ(small["b"].size(), 1u) << small;
+  EXPECT_LE(small.dump().size(), 50u) << small;
+  EXPECT_NE(hlcp("small.json").out.find("agree: 2 solutions"), std::string::npos);
+  const Result onto_itself = hlcp("large.json --shrink large.json");
+  EXPECT_EQ(onto_itself.status, 2);
+  EXPECT_EQ(onto_itself.err, "large.json: is the problem itself: write to another file\n");
+}
+
 TEST_F(HlcpCommand, SaysWhatItDoesNotCheckAboveOrderTwelve) {
   const json found = document("murty_13.json", 0);
   EXPECT_EQ(found["status"], "ok");
@@ -123,7 +139,7 @@ TEST_F(HlcpCommand, SaysWhatItDoesNotCheckAboveOrderTwelve) {
   EXPECT_EQ(found["x"][0], -1);
   EXPECT_EQ(found["x"][12], 1);
   EXPECT_EQ(found["verdict"],
-            "the kernel's x satisfies the equations; above order 12 its uniqueness (unproven) is not checked");
+            "the answer's x satisfies the equations; above order 12 its uniqueness (unproven) is not checked");
   json none = {{"M", json::parse(identity(13))}, {"q", std::vector<int>(13, -1)}};
   for (int k = 0; k < 13; ++k) none["M"][k][k] = -1;  // w + z = -1
   const json refused = answer(none.dump(), 1);
@@ -135,7 +151,7 @@ TEST_F(HlcpCommand, ReportsWhatTheKernelDoesNotDecide) {
   const json found = answer(R"({"A_plus": [[1e-300]], "A_minus": [[1e-300]], "b": [1e300]})", 1);
   EXPECT_EQ(found["status"], "inaccurate");
   EXPECT_EQ(found["agree"], false);
-  EXPECT_EQ(found["verdict"], "the kernel does not decide this problem: inaccurate");
+  EXPECT_EQ(found["verdict"], "nothing is said of this problem: inaccurate");
   ASSERT_EQ(found["solutions"].size(), 1u);
   EXPECT_TRUE(found["solutions"][0]["double"][0].is_null()) << "1e600";
   EXPECT_EQ(found["w_property"], true);
@@ -185,72 +201,72 @@ for name in sys.argv[2:]:
 
 using slideway::Status;
 using slideway::Uniqueness;
-using slideway::app::HlcpCheck;
+using slideway::properties::HlcpCheck;
 
-/// Of A+ x+ - A- x- = b of order 1, when the kernel says this.
+/// Of A+ x+ - A- x- = b of order 1, when the answer says this.
 HlcpCheck judge(double plus, double minus, double b, Status status, double x, Uniqueness uniqueness) {
-  slideway::app::HlcpProblem problem;
+  slideway::properties::HlcpCase problem;
   problem.n = 1;
   problem.data.plus[0][0] = plus;
   problem.data.minus[0][0] = minus;
   problem.data.b[0] = b;
-  slideway::app::HlcpKernel kernel = {};
+  slideway::properties::HlcpAnswer kernel = {};
   kernel.status = status;
   kernel.x[0] = x;
   kernel.uniqueness = uniqueness;
-  return slideway::app::check_hlcp(problem, kernel);
+  return slideway::properties::check_hlcp(problem, kernel);
 }
 
 void expect_disagreement(const HlcpCheck& check, const std::string& verdict) {
-  EXPECT_FALSE(check.agree);
+  EXPECT_FALSE(check.agree());
   EXPECT_EQ(check.verdict, verdict);
 }
 
 TEST(HlcpVerdict, DisagreesWithASolutionThatIsNone) {
   expect_disagreement(judge(3, 1, 1, Status::ok, 0.25, Uniqueness::certified),
-                      "disagree: the kernel's x misses an equation by 0.14 of its terms, and promised 1.1e-15");
+                      "disagree: the answer's x misses an equation by 0.14 of its terms, and promised 1.1e-15");
   expect_disagreement(judge(-1, 5, 1, Status::ok, 1, Uniqueness::unproven),
-                      "disagree: the kernel's x misses an equation by 1 of its terms, and promised 1.1e-15");
-  EXPECT_TRUE(judge(3, 1, 1, Status::ok, 1.0 / 3, Uniqueness::certified).agree);
-  EXPECT_TRUE(judge(1, 1, 1, Status::ok, 1 + 10 * 0x1p-52, Uniqueness::certified).agree) << "10 of 10";
-  EXPECT_FALSE(judge(1, 1, 1, Status::ok, 1 + 11 * 0x1p-52, Uniqueness::certified).agree) << "11 of 10";
+                      "disagree: the answer's x misses an equation by 1 of its terms, and promised 1.1e-15");
+  EXPECT_TRUE(judge(3, 1, 1, Status::ok, 1.0 / 3, Uniqueness::certified).agree());
+  EXPECT_TRUE(judge(1, 1, 1, Status::ok, 1 + 10 * 0x1p-52, Uniqueness::certified).agree()) << "10 of 10";
+  EXPECT_FALSE(judge(1, 1, 1, Status::ok, 1 + 11 * 0x1p-52, Uniqueness::certified).agree()) << "11 of 10";
 }
 
 TEST(HlcpVerdict, DisagreesWithASolutionWhereRoundingHidesThatThereIsNone) {
   // 1 x+ = 1 and (1 + 2^-52) x+ = 1 contradict; x = 1 misses the second by 2^-53 of its terms.
-  slideway::app::HlcpProblem problem;
+  slideway::properties::HlcpCase problem;
   problem.n = 2;
   for (int i = 0; i < 2; ++i) problem.data.b[i] = problem.data.plus[i][0] = problem.data.minus[i][0] = 1;
   problem.data.plus[1][0] = problem.data.minus[1][0] = 1 + 0x1p-52;
-  slideway::app::HlcpKernel kernel = {};
+  slideway::properties::HlcpAnswer kernel = {};
   kernel.x[0] = 1;
   kernel.uniqueness = Uniqueness::unproven;
-  expect_disagreement(slideway::app::check_hlcp(problem, kernel),
-                      "disagree: the kernel has a solution; exact: no solution");
+  expect_disagreement(slideway::properties::check_hlcp(problem, kernel),
+                      "disagree: the answer has a solution; exact: no solution");
 }
 
 TEST(HlcpVerdict, DisagreesWithAFalseClaimOfUniqueness) {
   expect_disagreement(judge(-1, 5, -1, Status::ok, 1, Uniqueness::certified),
-                      "disagree: the kernel says certified; exact: 2 solutions, the W-property does not hold");
+                      "disagree: the answer says certified; exact: 2 solutions, the W-property does not hold");
   expect_disagreement(judge(-1, 5, -1, Status::ok, 1, Uniqueness::single),
-                      "disagree: the kernel says single; exact: 2 solutions, the W-property does not hold");
+                      "disagree: the answer says single; exact: 2 solutions, the W-property does not hold");
   expect_disagreement(judge(3, 1, 1, Status::ok, 1.0 / 3, Uniqueness::single),
-                      "disagree: the kernel says single; exact: one solution, the W-property holds");
+                      "disagree: the answer says single; exact: one solution, the W-property holds");
   expect_disagreement(judge(3, 1, 1, Status::ok, 1.0 / 3, Uniqueness::refuted),
-                      "disagree: the kernel says refuted; exact: one solution, the W-property holds");
-  EXPECT_TRUE(judge(-1, 5, -1, Status::ok, 1, Uniqueness::refuted).agree);
-  EXPECT_TRUE(judge(-1, 5, -1, Status::ok, 1, Uniqueness::unproven).agree);
-  EXPECT_TRUE(judge(-1, 5, 0, Status::ok, 0, Uniqueness::single).agree);
+                      "disagree: the answer says refuted; exact: one solution, the W-property holds");
+  EXPECT_TRUE(judge(-1, 5, -1, Status::ok, 1, Uniqueness::refuted).agree());
+  EXPECT_TRUE(judge(-1, 5, -1, Status::ok, 1, Uniqueness::unproven).agree());
+  EXPECT_TRUE(judge(-1, 5, 0, Status::ok, 0, Uniqueness::single).agree());
 }
 
 TEST(HlcpVerdict, DisagreesWithARefusalWithoutCause) {
   expect_disagreement(judge(3, 1, 1, Status::no_solution, 0, Uniqueness::unproven),
-                      "disagree: the kernel says no_solution; exact: one solution");
+                      "disagree: the answer says no_solution; exact: one solution");
   expect_disagreement(judge(-1, 5, 1, Status::not_unique, 0, Uniqueness::refuted),
-                      "disagree: the kernel says not_unique; exact: no solution");
+                      "disagree: the answer says not_unique; exact: no solution");
   expect_disagreement(judge(0, 1, 0, Status::no_solution, 0, Uniqueness::unproven),
-                      "disagree: the kernel says no_solution; exact: a continuum of solutions");
-  EXPECT_TRUE(judge(0, 1, 0, Status::not_unique, 0, Uniqueness::refuted).agree);
+                      "disagree: the answer says no_solution; exact: a continuum of solutions");
+  EXPECT_TRUE(judge(0, 1, 0, Status::not_unique, 0, Uniqueness::refuted).agree());
 }
 
 // ---- Bad problems

@@ -14,22 +14,58 @@ struct Solving {
 /// The weaker of two statements about uniqueness.
 constexpr Uniqueness weaker(Uniqueness a, Uniqueness b) noexcept { return a > b ? a : b; }
 
-/// Is the sliding speed zero to rounding? |T q'| <= 4 eps (coordinates + 1) sum_j |q'_j| size_j, where size_j is what a
-/// column of T is made of: 1 for a slide, for a turn the places whose difference is its lever. Each carries a rounding
-/// for each body on its path. Loops give 1e-17 where they should give 0.
+/// Terms of a point's velocity on body i, at rho from its origin, m/s.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double speed_terms(const Source& source, const Kinematics<Size>& k, int i, Vec2 rho) noexcept {
+  if (i == ground) return 0;
+  double terms = source.tables.moving[i] ? std::fabs(k.velocity[i].x) + std::fabs(k.velocity[i].y) : 0;
+  if (source.tables.turning[i]) terms += std::fabs(k.rate[i]) * (std::fabs(rho.x) + std::fabs(rho.y));
+  return terms;
+}
+
+/// Is the sliding speed zero to rounding? |T q'| <= 4 eps ((coordinates + 1) sum_j |q'_j| size_j + the velocities whose
+/// difference it is), where size_j is what a column of T is made of: 1 for a slide, for a turn the places whose
+/// difference is its lever. Each carries a rounding for each body on its path. Loops give 1e-17 where they should give
+/// 0, and so does what slider and rail have in common.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool at_rest(const Source& source, const Work<Size>& w, int g, const double* v, double slip) noexcept {
   const auto& table = source.tables;
   const Link<Size>& link = table.guide[g];
-  const Vec2 place = w.friction.sliding[g].place;
+  const Sliding& s = w.friction.sliding[g];
   double terms = 0;
   for_each<Source, Size::coordinates>(link.columns, [&](int c) SLIDEWAY_FOLD {
     const int j = link.column[c];
     const Vec2 origin = w.kinematics.origin[table.body_of[j]];
-    const double lever = std::fabs(place.x) + std::fabs(place.y) + std::fabs(origin.x) + std::fabs(origin.y);
+    const double lever = std::fabs(s.place.x) + std::fabs(s.place.y) + std::fabs(origin.x) + std::fabs(origin.y);
     terms += std::fabs(v[j]) * (table.motion[j] == Motion::turn ? lever : 1);
   });
-  return std::fabs(slip) <= 4 * detail::epsilon * (link.columns + 1) * terms;
+  const Guide& guide = source.scene.guide[g];
+  const double common = speed_terms(source, w.kinematics, guide.slider, s.on_slider) +
+                        speed_terms(source, w.kinematics, guide.rail, s.on_rail);
+  return std::fabs(slip) <= 4 * detail::epsilon * ((link.columns + 1) * terms + common);
+}
+
+/// What roundings of q and v make of the right sides -alpha Phi' - beta Phi: Phi is a difference of places, each
+/// rounded four halves of an eps a body, Phi' of their velocities. m/s^2
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double state_rounding(const Source& source, const double* v, Gains gains) noexcept {
+  const auto& table = source.tables;
+  double speed = 0;
+  for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
+    speed += table.motion[j] == Motion::turn ? table.length * std::fabs(v[j]) : std::fabs(v[j]);
+  });
+  return 4 * detail::epsilon * (source.scene.bodies + 1) * (gains.beta * table.length + gains.alpha * speed);
+}
+
+/// Squared distance of rough contact i's row from that of its guide's other contact: forces of two contacts close to
+/// each other are rounding divided by that.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE double own_part(const Source& source, const Problem<Size>& hlcp, int i, double norm) noexcept {
+  const int c = source.tables.rough_contact[i], g = source.tables.guide_of[c];
+  if (Size::contacts < 2 || source.scene.guide[g].contacts != 2) return norm * norm;
+  const int o = c == source.tables.first_contact[g] ? i + 1 : i - 1;
+  const double shared = 0.5 * (hlcp.plus[i][o] + hlcp.minus[i][o]), other = 0.5 * (hlcp.plus[o][o] + hlcp.minus[o][o]);
+  return larger(norm * norm - shared * shared / other, detail::epsilon * norm * norm);
 }
 
 /// What an evaluation is for.
@@ -139,6 +175,9 @@ template <class Source, class Size = typename Source::Size>
   measure_power(source, v, w, r);
 }
 
+/// Solves at most, until contact forces have the signs that they were solved with: two suffice where one was rounding.
+inline constexpr int signs_rounds = 4;
+
 /// The guides at rest: their modes if they are to be decided, all contact forces and stiction.
 template <class Source, class Size = typename Source::Size>
 [[gnu::noinline]] Status hold(const Source& source, const Moment<Size>& at, const Solving& solving, const bool* rests,
@@ -162,7 +201,7 @@ template <class Source, class Size = typename Source::Size>
     problem.add(g, -gamma - solving.gains.alpha * r.slip[g], kinetic ? guide.mu : guide.mu_static);
     slack = larger(slack, solving.gains.alpha * std::fabs(r.slip[g]));
   }
-  problem.allow(4 * slack);
+  problem.allow(4 * slack, state_rounding(source, at.v, solving.gains));
   if (at.aim != Aim::follow) {
     const Status status = problem.decide(m, report);
     for (int g = source.scene.guides - 1; g >= 0; --g) {
@@ -172,7 +211,20 @@ template <class Source, class Size = typename Source::Size>
       return independent_contacts(hlcp, table.rough) ? status : Status::singular_constraints;
     }
   }
-  if (!problem.solve_in_mode(m, r.lambda)) return Status::singular_constraints;
+  // Signs were decided beside unknowns as large as preloads, and are rounding where contact forces are below that: the
+  // forces found in the mode have the last word. Their sign counts for guides that slip, so they are solved for again.
+  bool contradicted = true;
+  for (int round = 0; round < signs_rounds && contradicted; ++round) {
+    if (!problem.solve_in_mode(m, r.lambda)) return Status::singular_constraints;
+    contradicted = false;
+    for (int c = 0; c < table.contacts && at.aim != Aim::follow; ++c) {
+      const int g = table.guide_of[c];
+      const signed char sign = r.lambda[c] < 0 ? -1 : 1;
+      if (!table.is_rough[g] || sign == m.sign[c]) continue;
+      contradicted = contradicted || !rests[g] || m.mode[g] != 0;
+      m.sign[c] = sign;
+    }
+  }
   for (int c = 0; c < table.contacts; ++c) fr.face[c] = m.sign[c] < 0 ? -1 : 1;
   double largest = 0;
   for (int c = 0; c < table.contacts; ++c) {
@@ -296,19 +348,23 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   for_each<Source, Size::pins>(scene.pins, [&](int p) SLIDEWAY_FOLD { r.pin[p] = {w.pi[2 * p], w.pi[2 * p + 1]}; });
   if (!resolved(source, w)) return Status::singular_constraints;
   m.rounding = rank_bound(source) * w.scale;
+  m.state_rounding = state_rounding(source, at.v, solving.gains);
   for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
     const int c = table.rough_contact[i];
     m.norm[c] = w.friction.norm[i];
+    m.own[c] = own_part(source, hlcp, i, m.norm[c]);
     // Rounding has no face of its own.
-    if (m.decided && std::fabs(r.lambda[c]) * m.norm[c] <= m.rounding) m.sign[c] = signs[i];
+    const double noise = m.rounding * m.norm[c] + m.state_rounding;  // times m.own
+    if (m.decided && std::fabs(r.lambda[c]) * m.own[c] <= noise) m.sign[c] = signs[i];
   });
   from_metric(source, w.dynamics, w.u);
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
     r.acceleration[j] = table.free_of[j] != none ? w.u[table.free_of[j]] : w.prescribed[j];
   });
 
-  for_each<Source, Size::guides>(scene.guides,
-                                 [&](int g) SLIDEWAY_FOLD { w.friction.held[g] = rests[g] && m.mode[g] == 0; });
+  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
+    w.friction.held[g] = rests[g] && (m.mode[g] == 0 || at.aim != Aim::impulse);
+  });
   const bool opposes = rub(source, w.friction, rests, r) || at.aim == Aim::follow;
   double residual = check(source, w, r);
   if (!all_slip && at.aim == Aim::impulse) {

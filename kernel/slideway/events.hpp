@@ -116,7 +116,10 @@ class LocatedStep {
       watched_[n_contacts + g] = m.mode[g] != 0 || !jammed_;
       const int c = source_.tables.first_contact[g];
       noise_[n_contacts + g] = 8 * detail::epsilon * std::fabs(first_.slip[g]);
-      if (m.mode[g] == 0) noise_[n_contacts + g] = (1 + source_.scene.guide[g].mu_static) * 2 * m.noise(c);
+      if (m.mode[g] != 0) return;
+      double noise = 0;
+      for (int i = 0; i < source_.scene.guide[g].contacts; ++i) noise += m.noise(c + i);
+      noise_[n_contacts + g] = 2 * (1 + source_.scene.guide[g].mu_static) * noise;
     });
     each_watched([&](int i) SLIDEWAY_FOLD {
       start_.of[i] = value(i, m, first_);
@@ -203,13 +206,14 @@ class LocatedStep {
     probe.value.of[jam] = 1;
     if (jammed_) {
       bool same = status == Status::ok;
-      for (int g = 0; g < n_guides; ++g) same = same && (m.mode[g] != 0 || ends.mode[g] == 0);
+      for (int g = 0; g < source_.scene.guides; ++g) same = same && (m.mode[g] != 0 || ends.mode[g] == 0);
       if (!same) {
         probe.value.of[jam] = -1;
+        each_watched([&](int i) { probe.value.of[i] = std::fabs(start_.of[i]); });  // nothing is known of them
         return Status::ok;
       }
-      for (int g = 0; g < n_guides; ++g) ends.mode[g] = m.mode[g];
-      for (int c = 0; c < n_contacts; ++c) ends.sign[c] = m.sign[c];
+      for (int g = 0; g < source_.scene.guides; ++g) ends.mode[g] = m.mode[g];
+      for (int c = 0; c < source_.tables.contacts; ++c) ends.sign[c] = m.sign[c];
     }
     if (status != Status::ok) return status;
     friction_ = r;
@@ -234,6 +238,7 @@ class LocatedStep {
     double dips[functions];
     int places = 0;
     each_watched([&](int i) {
+      range_[i] = high_value_[i] - low_[i];
       if (low_[i] - 0.125 * (high_value_[i] - low_[i]) < -noise_[i] && tableau.c[low_at_[i]] < 1) {
         dips[places++] = tableau.c[low_at_[i]] * left;
       }
@@ -253,7 +258,7 @@ class LocatedStep {
       if (status != Status::ok) return status;
       found = is_over(high_.value);
     }
-    if (found) return locate(done, y, m);
+    if (found) return locate(done, left, y, m);
     stages_.to = whole.to;
     stages_.flow = whole.flow;
     return Status::ok;
@@ -275,8 +280,8 @@ class LocatedStep {
 
   /// Brings the end of high_, which is over, to the first zero: low end and high end of a bracket; inverse quadratic
   /// interpolation by the function that is estimated to vanish first, bisection when that does not halve the bracket in
-  /// three probes.
-  Status locate(double done, const Phase<Size>& y, const Modes<Size>& m) noexcept {
+  /// three probes. Refused where forces change their sign through infinity.
+  Status locate(double done, double left, const Phase<Size>& y, const Modes<Size>& m) noexcept {
     double low = 0, third = 0, width = high_.s;
     Values at_low = start_, at_third = start_;
     each_watched([&](int i) {
@@ -309,7 +314,22 @@ class LocatedStep {
         at_low = now.value;
       }
     }
-    return Status::ok;
+    return has_pole(done, left, at_low) ? Status::singular_constraints : Status::ok;
+  }
+
+  /// Does a contact force or a limit change by an eighth of what it changed by in the whole step between the ends of
+  /// the bracket, which are some roundings of the time apart? Then friction has made the contacts' matrix singular
+  /// there.
+  bool has_pole(double done, double left, const Values& at_low) const noexcept {
+    bool pole = false;
+    if (!(left > 0x1p10 * resolution(done, left))) return false;
+    each_watched([&](int i) {
+      const double jump = at_low.of[i] - high_.value.of[i];
+      if (!(high_.value.of[i] < 0) || !(jump > 0.125 * range_[i] && jump > noise_[i])) return;
+      setting_.report.guide = i < n_contacts ? source_.tables.guide_of[i] : i - n_contacts;
+      pole = true;
+    });
+    return pole;
   }
 
   bool is_negative(const Values& value) const noexcept {
@@ -400,7 +420,7 @@ class LocatedStep {
   Stages<tableau, Source> stages_;
   Probe high_;
   Values start_;
-  double low_[functions], high_value_[functions], noise_[functions];
+  double low_[functions], high_value_[functions], noise_[functions], range_[functions];
   int low_at_[functions];
   bool watched_[functions], jammed_ = false;
 };

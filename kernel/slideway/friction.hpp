@@ -32,7 +32,7 @@ struct Friction {
   double sigma[n_guides];      ///< friction per |lambda|, along the guide; 0 at rest
   double stiction[n_guides];   ///< F_0, at the first contact, N
   double steady[n_guides];     ///< viscous and preload friction while slipping, at the first contact, N; in h
-  bool held[n_guides];         ///< at rest: friction is a constraint's force
+  bool held[n_guides];         ///< at rest, or leaving it at this instant: its speed is drift
   double face[n_contacts];     ///< +1, -1: the face that carries, so that |lambda| = face lambda
   double free_motion[n_free];  ///< h~
   double u0[n_free];

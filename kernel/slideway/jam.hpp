@@ -21,8 +21,12 @@ class JammedGuides : public RestEquations<Source> {
   JammedGuides(const Source& source, const HlcpOptions& options, Friction<Size>& fr, Problem<Size>& sliding) noexcept
       : Base(source, fr, sliding), options_(options) {}
 
-  /// What speeds that are not quite zero make of alpha v, m/s^2: rows that follow from others are met but for that.
-  void allow(double slack) noexcept { slack_ = slack; }
+  /// What roundings of the state, and speeds that are not quite zero, make of Baumgarte's terms, m/s^2: rows that
+  /// follow from others are met but for that.
+  void allow(double speeds, double roundings) noexcept {
+    slack_ = speeds + roundings;
+    roundings_ = roundings;
+  }
 
  protected:
   using Base::attempt, Base::build_in_mode, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
@@ -285,7 +289,7 @@ class JammedGuides : public RestEquations<Source> {
   const HlcpOptions& options_;
   int open_[n_guides], open_count_ = 0;  ///< guides whose mode is to be found
   bool fixed_[n_guides], dwells_[n_guides], jammed_ = false;
-  double slack_ = 0;
+  double slack_ = 0, roundings_ = 0;
 };
 
 }  // namespace slideway

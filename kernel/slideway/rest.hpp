@@ -32,13 +32,15 @@ class RestProblem : public JammedGuides<Source> {
 
   /// Modes of the guides that were added, contact signs, and which rows hold; m in and out. A guide that comes with a
   /// mode other than 0 keeps it if it gains speed that way. mu_static decides who leaves, mu acts on those that do:
-  /// solved again until no guide joins them (at most guides + 1 rounds) or turns back (as many).
+  /// solved again until no guide joins them (at most guides + 1 rounds) or turns back (as many). Where sliding as
+  /// proposed has no solution the law is asked without the proposal.
   Status decide(Modes<Size>& m, Report& report) noexcept {
     span_contacts();
     find_determined(m);
-    for (int round = 0; round < 2 * Size::guides + 2; ++round) {
+    for (int round = 0; round < 2 * Size::guides + 3; ++round) {
       for (int i = 0; i < count_; ++i) candidate_[set_[i]] = m.mode[set_[i]];
       const Status status = jammed_ ? decide_jammed(m, report) : decide_regular(m, report);
+      if (status == Status::no_solution && withdraw(m)) continue;
       if (status != Status::ok) return status;
       if (!turn_back(m) && !break_away(m)) return Status::ok;
     }
@@ -51,7 +53,7 @@ class RestProblem : public JammedGuides<Source> {
       Base::take_guide;
   using Base::source_, Base::table_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
       Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::open_, Base::open_count_, Base::size_,
-      Base::problem_, Base::fixed_, Base::dwells_, Base::jammed_, Base::options_;
+      Base::problem_, Base::roundings_, Base::fixed_, Base::dwells_, Base::jammed_, Base::options_;
 
   /// Guides whose motion friction cannot change: they slide as v' says, or dwell. And whether the others' rows depend
   /// on each other.
@@ -65,7 +67,7 @@ class RestProblem : public JammedGuides<Source> {
         continue;
       }
       const double v = excess(g);
-      fixed_[g] = std::fabs(v) > excess_bound(g);
+      fixed_[g] = std::fabs(v) > excess_bound(g) + roundings_;
       dwells_[g] = !fixed_[g];
       m.mode[g] = static_cast<signed char>(!fixed_[g] ? 0 : v > 0 ? 1 : -1);
       if (fixed_[g]) coefficient_[g] = source_.scene.guide[g].mu;
@@ -147,7 +149,28 @@ class RestProblem : public JammedGuides<Source> {
     return Status::ok;
   }
 
-  [[gnu::noinline]] void hlcp_solve(HlcpSolution<order>& answer) noexcept { solve(problem_, size_, answer, options_); }
+  /// A right side far below the rounding of the largest is none: alpha v of a guide at rest dies away exponentially,
+  /// and an exact decision is one of numbers within 2^400 of each other.
+  [[gnu::noinline]] void hlcp_solve(HlcpSolution<order>& answer) noexcept {
+    double largest = 0;
+    for (int r = 0; r < size_; ++r) largest = larger(largest, std::fabs(problem_.b[r]));
+    for (int r = 0; r < size_; ++r) {
+      if (std::fabs(problem_.b[r]) < 0x1p-150 * largest) problem_.b[r] = 0;
+    }
+    solve(problem_, size_, answer, options_);
+  }
+
+  /// Guides that came with a mode are open, too; true if there is one.
+  bool withdraw(Modes<Size>& m) noexcept {
+    bool any = false;
+    for (int i = 0; i < count_; ++i) {
+      const int g = set_[i];
+      if (candidate_[g] == 0 || fixed_[g]) continue;
+      m.mode[g] = 0;
+      any = true;
+    }
+    return any;
+  }
 
   /// Guides that took part with a mode, and would lose speed that way, are at rest; true if there is one.
   bool turn_back(Modes<Size>& m) noexcept {

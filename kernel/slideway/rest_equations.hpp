@@ -25,10 +25,12 @@ struct Modes {
   double stiction[n_guides];    ///< of a guide at rest that is not bound: its share of the friction, N
   double limit_left[n_guides];  ///< of a guide at rest: static limit less |friction|, N
   double rounding;              ///< of the sum that u = G q'' is
+  double state_rounding;        ///< of what Baumgarte's terms make of a state in doubles, m/s^2
   double norm[at_least_one(Size::contacts)];  ///< |N~| of each rough contact
+  double own[at_least_one(Size::contacts)];   ///< |N~|^2 less what its guide's other contact has of it, 1/kg
 
   /// Rounding of a contact force, N.
-  constexpr double noise(int c) const noexcept { return rounding / norm[c]; }
+  constexpr double noise(int c) const noexcept { return (rounding * norm[c] + state_rounding) / own[c]; }
   /// And of the v' of a guide whose first contact is c, m/s^2.
   constexpr double motion_noise(int c) const noexcept { return rounding * norm[c]; }
 };

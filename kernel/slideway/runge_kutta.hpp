@@ -52,18 +52,21 @@ class Stages {
     return run(setting, tau, h, from, first, aim, m, before, after, std::make_integer_sequence<int, count>{});
   }
 
-  /// Do the doubts exceed a quarter of sum |b_k a_k|, over all coordinates? For q'' = -w^2 q they are some hundredths
-  /// at h w = 1 and above a quarter from h w = 2 (rk4) on, where a step is long beside the motion's own times.
+  /// Do the doubts exceed a quarter of sum |b_k a_k|, over all coordinates, an angle counting as the scene's length
+  /// times it? For q'' = -w^2 q they are some hundredths at h w = 1 and above a quarter from h w = 2 (rk4) on, where a
+  /// step is long beside the motion's own times.
   bool is_too_long(const Source& source) const noexcept {
     double apart = 0, size = 0;
     for (int j = 0; j < source.tables.coordinates; ++j) {
-      double doubt[2] = {0, 0};
+      double doubt[2] = {0, 0}, terms = 0;
       for (int k = 0; k < count; ++k) {
         doubt[0] += tableau.doubt[0][k] * a_[k][j];
         doubt[1] += tableau.doubt[1][k] * a_[k][j];
-        size += std::fabs(tableau.b[k] * a_[k][j]);
+        terms += std::fabs(tableau.b[k] * a_[k][j]);
       }
-      apart += std::fabs(doubt[0]) + std::fabs(doubt[1]);
+      const double lever = source.tables.motion[j] == Motion::turn ? source.tables.length : 1;
+      size += lever * terms;
+      apart += lever * (std::fabs(doubt[0]) + std::fabs(doubt[1]));
     }
     return apart > 0.25 * size;
   }

@@ -13,6 +13,8 @@ namespace {
 /// More dots than this in one line are nested tables so deep that their destruction would overflow the stack.
 constexpr std::ptrdiff_t most_dots = 200;
 
+constexpr std::size_t most_of_error = 200;  ///< of the parser's, which quotes what it read
+
 /// What no TOML parser should be given; the line is 0 for the text as a whole.
 std::optional<FileDefect> refuse(std::string_view text, const std::string& file) {
   if (text.size() > largest_text) return FileDefect{file, 0, "is longer than 1 MiB, too much for a scene"};
@@ -141,7 +143,7 @@ Reading parse_scene(std::string_view text, const std::string& file, const std::v
     root = toml::parse(text);
   } catch (const toml::parse_error& error) {
     const int line = static_cast<int>(error.source().begin.line);
-    reading.defects.push_back({file, line, "is not TOML: " + std::string(error.description())});
+    reading.defects.push_back({file, line, "is not TOML: " + printable(error.description(), most_of_error)});
     return reading;
   }
   for (const std::string& setting : settings) apply_setting(root, setting, reading.defects);

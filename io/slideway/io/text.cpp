@@ -39,12 +39,17 @@ bool is_name(std::string_view text) noexcept {
          std::all_of(text.begin(), text.end(), [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-std::string quote(std::string_view text) {
-  constexpr std::size_t most = 60;
+std::string printable(std::string_view text, std::size_t most) {
   std::string shown{text.substr(0, most)};
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + shown + (text.size() > most ? "...'" : "'");
+  return text.size() > most ? shown + "..." : shown;
+}
+
+std::string quote(std::string_view text) {
+  std::string quoted = "'";
+  quoted += printable(text, 60);
+  return quoted += '\'';
 }
 
 std::string nearest(std::string_view text, const std::vector<std::string>& candidates) {

@@ -10,7 +10,10 @@ namespace slideway::io {
 /// [A-Za-z_][A-Za-z0-9_]*
 bool is_name(std::string_view text) noexcept;
 
-/// 'text', with what a terminal must not see replaced by '?', and cut to a length that fits a message.
+/// Of the text at most `most` bytes, then "...", with what a terminal must not see replaced by '?'.
+std::string printable(std::string_view text, std::size_t most);
+
+/// 'text', printable, and cut to a length that fits a message.
 std::string quote(std::string_view text);
 
 /// The candidate that `text` was most likely meant to be; empty if none is near. By edit distance, at most a third of

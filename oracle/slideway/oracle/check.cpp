@@ -189,6 +189,12 @@ InstantCheck Checker::check(const ClaimedInstant& claim) {
   }
   check_sliding(claim, *taken, result);
   check_rest(claim, *taken, result);
+  // Beside a limit, where doubles put what is at it, forces may be a choice between sets that differ by their rounding.
+  const bool alike = std::all_of(decision.solutions.begin(), decision.solutions.end(), [&](const Solution<Real>& s) {
+    return largest(difference(s.lambda, claim.lambda)) <= result.lambda.bound &&
+           largest(difference(s.friction, claim.friction)) <= result.friction.bound;
+  });
+  if (result.verdict == Verdict::motion_only && alike) result.verdict = Verdict::unique;
   return result;
 }
 
