@@ -26,7 +26,7 @@ bool are_tied(const properties::HlcpAnswer& a, const properties::HlcpAnswer& b, 
 }
 
 bool is_hidden(const properties::HlcpCheck& check, int n) {
-  return n > 4 && check.solved() && check.exact && check.exact->count() == oracle::Count::none;
+  return n > 4 && check.exact && !check.exact->w_property && check.answer.uniqueness != Uniqueness::certified;
 }
 
 bool gives_energy(const io::RunStepper& stepper, const Report& report, double dt, const std::string& violation) {

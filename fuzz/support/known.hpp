@@ -14,7 +14,7 @@ bool is_extreme(const properties::HlcpCase& problem);
 /// Above order 4 two certified answers, from other signs, differ in what is a tie of zero and rounding.
 bool are_tied(const properties::HlcpAnswer& a, const properties::HlcpAnswer& b, int n);
 
-/// Above order 4, rounding hides that a singular problem has no solution.
+/// Above order 4, rounding hides that a singular problem has no solution, or one: then answers without proof are wrong.
 bool is_hidden(const properties::HlcpCheck& check, int n);
 
 /// Friction gives energy, as step_contract() says it: by rounding where hardly any energy crosses the border, and in

@@ -73,7 +73,7 @@ std::string suggestion(std::string_view text, const std::vector<std::string>& ca
   if (const std::string near = nearest(text, candidates); !near.empty()) return "; did you mean " + quote(near) + "?";
   std::string list;
   for (std::size_t i = 0; i < candidates.size() && i < most; ++i) {
-    list += (i == 0 ? "; there are: " : ", ") + candidates[i];
+    list += (i == 0 ? "; there are: " : ", ") + printable(candidates[i], 60);
   }
   return candidates.size() > most ? list + ", ..." : list;
 }
