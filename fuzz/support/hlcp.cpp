@@ -125,8 +125,9 @@ void hold_numbers(const Asked& asked, const HlcpAnswer& answer) {
 
 void hold_truth(const Asked& asked, const HlcpAnswer& answer, Numbers numbers) {
   const HlcpCheck check = properties::check_hlcp(asked.problem, answer);
+  const bool claims_several = answer.uniqueness == Uniqueness::refuted;
   const bool misses = check.solved() && check.residual > properties::residual_promised(asked.problem.n);
-  if (misses && known::is_extreme(asked.problem)) return;
+  if ((misses || claims_several) && known::is_extreme(asked.problem)) return;
   if (known::is_hidden(check, asked.problem.n)) return;
   asked.require(check.judgement != Judgement::disagree, check.verdict);
   if (asked.problem.n > 4 || numbers == Numbers::any) return;

@@ -33,8 +33,8 @@ bool gives_energy(const io::RunStepper& stepper, const Report& report, double dt
   if (!violation.starts_with("friction and dampers gave")) return false;
   const auto& source = stepper.source;
   const double rounding = 0x1p-40 * properties::typical_force(source.scene) * source.tables.length;
-  return report.unlocated_events > 0 || dt > 0.05 || report.drift_velocity > 1e-9 ||
-         report.energy.dissipated > -rounding;
+  const bool off = report.drift_position > 1e-9 || report.drift_velocity > 1e-9;
+  return report.events + report.unlocated_events > 0 || dt > 0.05 || off || report.energy.dissipated > -rounding;
 }
 
 bool overflows(double dt) { return dt > 1e9; }

@@ -8,7 +8,7 @@
 namespace slideway::fuzz::known {
 
 /// Where products of data beyond 2^+-200 and x underflow or overflow, rows of an answer are missed by all of their
-/// terms, and whether one of several is chosen depends on the start.
+/// terms, one of two solutions may be none, and whether one is chosen depends on the start.
 bool is_extreme(const properties::HlcpCase& problem);
 
 /// Above order 4 two certified answers, from other signs, differ in what is a tie of zero and rounding.
@@ -18,8 +18,8 @@ bool are_tied(const properties::HlcpAnswer& a, const properties::HlcpAnswer& b, 
 bool is_hidden(const properties::HlcpCheck& check, int n);
 
 /// Friction gives energy, as step_contract() says it: by rounding where hardly any energy crosses the border, and in
-/// steps that go over an event, are longer than any motion (dampers are taken at their start) or start with rates off
-/// the constraints.
+/// steps that go over an event, are longer than any motion (dampers are taken at their start) or start off the
+/// constraints.
 bool gives_energy(const io::RunStepper& stepper, const Report& report, double dt, const std::string& violation);
 
 /// Flows of energy overflow in steps that are longer than any motion.
