@@ -37,10 +37,10 @@ bool siconos_solver(int n, const double* M, const double* q, double* z) {
   }
   NumericsMatrix* matrix = NM_create_from_data(NM_DENSE, n, n, columns.data());
   LinearComplementarityProblem problem{n, matrix, right.data()};
-  SolverOptions* options = solver_options_create(SICONOS_LCP_LEMKE);
+  // Kept: solver_options_delete does not free the structure itself in version 4.4.
+  static SolverOptions* const options = solver_options_create(SICONOS_LCP_LEMKE);
   int info = 1;
   lcp_lexicolemke(&problem, z, w.data(), &info, options);
-  solver_options_delete(options);
   matrix->matrix0 = nullptr;  // ours
   NM_clear(matrix);
   std::free(matrix);
