@@ -482,8 +482,9 @@ Instant solve(const Scene& scene, const Stepper::State& state, const slideway::I
     const Real friction = -scene.guide[guide_of[c]].mu * direction[guide_of[c]] * std::fabs(lambda);
     result.lambda.push_back(lambda);
     result.friction[guide_of[c]] += friction;
-    result.dissipated -= friction * base.along[c].d;
-    result.constraint_work += lambda * base.off[c].d;
+    const Real slip = result.slip[guide_of[c]];  // at the first contact; what another slips beyond it is drift
+    result.dissipated -= friction * slip;
+    result.constraint_work += lambda * base.off[c].d + friction * (base.along[c].d - slip);
   }
   for (int p = 0; p < scene.pins; ++p) {
     const Real* pi = multiplier + first_pin + 2 * p;

@@ -331,6 +331,23 @@ TEST(StepRefuses, ResultsThatOverflow) {
   }
 }
 
+TEST(StepRefuses, EnergiesThatOverflow) {
+  // 1e100 N at 1e150 m/s for 1e60 s: place and speed are numbers, the work is none.
+  Scene scene;
+  scene.bodies = scene.loads = 1;
+  scene.body[0].mass = 1;
+  scene.body[0].joint = slideway::Joint::prismatic;
+  scene.body[0].v[0] = 1e150;
+  scene.load[0].body = 0;
+  scene.load[0].force = {1e100, 0};
+  for (const Method method : slideway::methods) {
+    if (method == Method::kinematic) continue;
+    Stepper stepper(scene);
+    stepper.method = method;
+    expect_refusal(stepper, stepper.start(), Status::inaccurate, 1e60);
+  }
+}
+
 TEST(StepRefuses, DriftBeyondItsLimit) {
   for (const Method method : {Method::euler, Method::rk4, Method::kinematic}) {
     Stepper stepper(shipped("crank_rocker"));  // length of the scene: 1 m, limit 1e-3 m

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <slideway/properties/hlcp.hpp>
-#include <slideway/properties/step.hpp>
-#include <string>
 
 namespace slideway::fuzz::known {
 
@@ -16,16 +14,5 @@ bool are_tied(const properties::HlcpAnswer& a, const properties::HlcpAnswer& b, 
 
 /// Above order 4, rounding hides that a singular problem has no solution, or one: then answers without proof are wrong.
 bool is_hidden(const properties::HlcpCheck& check, int n);
-
-/// Friction gives energy, as step_contract() says it: by rounding where hardly any energy crosses the border, and in
-/// steps that go over an event, are longer than any motion (dampers are taken at their start) or start off the
-/// constraints.
-bool gives_energy(const io::RunStepper& stepper, const Report& report, double dt, const std::string& violation);
-
-/// Flows of energy overflow in steps that are longer than any motion.
-bool overflows(double dt);
-
-/// The friction of a guide at its limit exceeds it by more than coulomb() has room for, but not by 1e-10 of it.
-bool is_at_limit(const std::string& violation);
 
 }  // namespace slideway::fuzz::known

@@ -173,6 +173,10 @@ template <class Source, class Size = typename Source::Size>
     w.dynamics.damper_power += spring.damping * rate * rate;
   }
   measure_power(source, v, w, r);
+  for (int g = 0; g < source.scene.guides; ++g) {  // `steady` is of the speeds at the start, as the dampers' forces are
+    if (!source.tables.is_steady[g] || w.friction.held[g]) continue;
+    r.power.dissipated += (w.friction.steady[g] + source.scene.guide[g].viscous * r.slip[g]) * r.slip[g];
+  }
 }
 
 /// Solves at most, until contact forces have the signs that they were solved with: two suffice where one was rounding.

@@ -221,8 +221,8 @@ SLIDEWAY_INLINE void measure_power(const Source& source, const double* v, const 
     }
     r.power.constraint_work += r.lambda[c] * s.Phi_rate[0];
     if (source.scene.guide[g].contacts == 1) return;
-    if (table.is_rough[g]) {
-      r.power.dissipated -= fr.sigma[g] * (fr.face[c + 1] * r.lambda[c + 1]) * (s.slip[1] - s.slip[0]);
+    if (table.is_rough[g]) {  // what this contact slips beyond the other is drift too
+      r.power.constraint_work += fr.sigma[g] * (fr.face[c + 1] * r.lambda[c + 1]) * (s.slip[1] - s.slip[0]);
     }
     r.power.constraint_work += r.lambda[c + 1] * s.Phi_rate[1];
   });

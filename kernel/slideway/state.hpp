@@ -80,8 +80,8 @@ struct Inputs {
 /// final - initial = work - dissipated + constraint_work.
 struct EnergyFlow {
   double work = 0;             ///< by drives and loads
-  double dissipated = 0;       ///< by friction and dampers
-  double constraint_work = 0;  ///< by constraint forces on the drift: sum of lambda Phi'
+  double dissipated = 0;       ///< by friction on the slip of its guide and by dampers: never negative at an instant
+  double constraint_work = 0;  ///< by constraint forces and friction on the drift: sum of lambda Phi' and the like
 };
 
 /// Forces at one instant, with the slip directions and contact signs that hold just after it. Plain data, filled in by

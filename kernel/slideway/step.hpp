@@ -131,8 +131,7 @@ class BasicStepper : public Solving {
   }
 
   /// A sum of finite numbers far from overflow is finite, and one that is not finite makes it so.
-  bool finite(const double* q, const double* v) const noexcept {
-    double sum = 0;
+  bool finite(const double* q, const double* v, double sum = 0) const noexcept {
     for_each<Source, Size::coordinates>(source.tables.coordinates, [&](int j) SLIDEWAY_FOLD { sum += q[j] + v[j]; });
     return detail::finite(sum);
   }
@@ -399,7 +398,8 @@ Report BasicStepper<Source>::step(State& state, double dt, const Inputs& inputs)
     report.status =
         Projection<Source>(source, inputs, dt, y.q, y.v).onto_constraints(t + dt, m.mode, method != Method::moreau);
   }
-  if (report.status == Status::ok && !finite(y.q, y.v)) report.status = Status::inaccurate;
+  const double flow = report.energy.work + report.energy.dissipated + report.energy.constraint_work;
+  if (report.status == Status::ok && !finite(y.q, y.v, flow)) report.status = Status::inaccurate;
   if (report.status == Status::ok && !(report.drift_position <= drift_limit * source.tables.length)) {
     report.status = Status::drift_limit;
   }

@@ -15,14 +15,17 @@ using Violation = std::string;
 
 /// Coulomb's law at a state, in the forces of stepper.reaction(): |F + viscous v| <= mu_static Lambda + preload; where
 /// a guide slips F + viscous v = -sgn(v) (mu Lambda + preload), which does no work on the slip; a guide whose mode is
-/// rest has no speed but drift. To 2^-40 of the largest force: some thousand roundings. Nothing where the reaction is
+/// rest has no speed but drift. To 2^-39 of the largest force, some thousand roundings: twice what the kernel lets the
+/// friction of a guide at rest exceed its limit by. Nothing where the reaction is
 /// refused.
 Violation coulomb(const RunStepper& stepper, const RunState& state);
 
-/// A refusal left every byte of `before`; an answer is finite, advanced, and its friction dissipated: not less than
-/// 0, but for 2^-40 of all energy that crossed the border. (dop853_located has negative weights: there it may be less.)
+/// A refusal left every byte of `before`; an answer is finite, advanced, and its friction dissipated: not less than 0,
+/// but for 2^-40 of all energy that crossed the border. Located methods freeze modes in their stages, and
+/// dop853_located has negative weights: these may give what they err by. That is at most twice what 16 steps of dt / 16
+/// change, if these err by half as much or less; nothing is asked where one of them is refused.
 Violation step_contract(const RunStepper& stepper, const RunState& before, const RunState& after, const Report& report,
-                        double dt);
+                        double dt, const RunStepper::Inputs& inputs = {});
 
 /// Largest load or weight of a scene, N, and 1e-3 N: what forces near zero are measured by.
 double typical_force(const Scene<io::RunSize>& scene);
