@@ -240,8 +240,7 @@ TEST(Evaluations, AreBoundedOverAllScenes) {
       const int most = counts.back();
       worst = std::max(worst, (most + stages - 1) / stages);
       const int contacts_and_guides = stepper.source.tables.contacts + stepper.source.scene.guides;
-      const int cap = (stepper.max_events + contacts_and_guides + most_pieces + 1) *
-                      (2 + (1 + most_pieces + probes_to_find + probes_to_locate) * stages);
+      const int cap = (stepper.max_events + contacts_and_guides + most_pieces + 1) * evaluations_of_a_round(stages);
       EXPECT_LE(most, cap);
       RecordProperty(std::string(scene) + "_" + name(method), most);
     }

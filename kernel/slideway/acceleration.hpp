@@ -54,7 +54,8 @@ SLIDEWAY_INLINE double state_rounding(const Source& source, const double* v, Gai
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
     speed += table.motion[j] == Motion::turn ? table.length * std::fabs(v[j]) : std::fabs(v[j]);
   });
-  return 4 * detail::epsilon * (source.scene.bodies + 1) * (gains.beta * table.length + gains.alpha * speed);
+  return 4 * detail::epsilon * (source.scene.bodies + 1) *
+         (std::fabs(gains.beta) * table.length + std::fabs(gains.alpha) * speed);
 }
 
 /// Squared distance of rough contact i's row from that of its guide's other contact: forces of two contacts close to

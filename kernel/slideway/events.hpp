@@ -11,12 +11,17 @@
 #pragma once
 
 #include <slideway/runge_kutta.hpp>
+#include <slideway/verify.hpp>
 
 namespace slideway {
 
-/// Evaluations of a step by a located method with s stages: at most max_events + contacts + guides + most_pieces + 1
-/// rounds of 2 + (1 + most_pieces + probes_to_find + probes_to_locate) s.
 inline constexpr int probes_to_find = 12, probes_to_locate = 64, most_pieces = 32;
+
+/// Evaluations of a step by a located method with s stages: at most this for each of
+/// max_events + contacts + guides + most_pieces + 1 rounds.
+constexpr int evaluations_of_a_round(int stages) noexcept {
+  return 2 + (1 + most_pieces + probes_to_find + probes_to_locate) * stages;
+}
 
 template <const auto& tableau, class Source>
 class LocatedStep {
@@ -34,6 +39,8 @@ class LocatedStep {
     int standing = 0;
     Modes<Size> before = m;
     for (int round = 0; round < max_events_ + n_contacts + n_guides + most_pieces + 1; ++round) {
+      SLIDEWAY_CLAIM(0 <= done && done <= h);
+      SLIDEWAY_CLAIM(setting_.report.evaluations <= round * evaluations_of_a_round(tableau.stages));
       const Status decided = begin(done, y, m);
       if (decided != Status::ok) return decided;
       if (!take_events(done, before, m)) return Status::event_limit;
@@ -258,6 +265,7 @@ class LocatedStep {
       if (status != Status::ok) return status;
       found = is_over(high_.value);
     }
+    SLIDEWAY_CLAIM(0 < high_.s && high_.s <= left);
     if (found) return locate(done, left, y, m);
     stages_.to = whole.to;
     stages_.flow = whole.flow;
@@ -289,13 +297,15 @@ class LocatedStep {
     });
     bool have_third = false;
     for (int k = 0; k < probes_to_locate; ++k) {
+      SLIDEWAY_CLAIM(0 <= low && low < high_.s && is_negative(high_.value));
       const double near = resolution(done, high_.s);
       if (high_.s - low <= near) break;
-      double s = estimate(low, at_low, high_.s, high_.value, third, at_third, have_third);
-      if (k % 3 == 2) {
-        if (high_.s - low > 0.5 * width) s = low + 0.5 * (high_.s - low);
+      if (k % 3 == 0) {  // halved, but for the distance that is kept from its ends
+        SLIDEWAY_CLAIM(k == 0 || high_.s - low <= 0.5 * width + near);
         width = high_.s - low;
       }
+      double s = estimate(low, at_low, high_.s, high_.value, third, at_third, have_third);
+      if (k % 3 == 2 && high_.s - low > 0.5 * width) s = low + 0.5 * (high_.s - low);
       if (!(s > low + 0.5 * near)) s = low + 0.5 * near;
       if (!(s < high_.s - 0.5 * near)) s = high_.s - 0.5 * near;
       if (!(s > low && s < high_.s)) break;
