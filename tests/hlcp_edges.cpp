@@ -339,4 +339,55 @@ TEST(HlcpEdges, ASubnormalRightSideIsScaledByItsOwnSize) {
   EXPECT_EQ(answer(problem).status, Status::no_solution) << name(answer(problem).status);
 }
 
+// ---- what underflow hides
+
+template <int N>
+void expect_refused(const Hlcp<N>& problem, Status status) {
+  for (unsigned code = 0; code < (1U << N); ++code)
+    for (const NotUnique policy : {NotUnique::refuse, NotUnique::continue_along_signs}) {
+      const HlcpSolution<N> solution = answer(problem, code, {policy});
+      EXPECT_EQ(name(solution.status), std::string(name(status))) << "from " << code;
+    }
+}
+
+TEST(HlcpEdges, ARowWhoseTermsUnderflowIsNotSatisfied) {
+  // x = (5e-324 / 12.25 times 5.7e-56, -5.7e-56): without x1's coefficient, which is lost beside 12.25 when rows are
+  // scaled, row 2 would be 12.25 x1 = 0.
+  expect_refused(hlcp<2>({{{12.25, -1.0}, {12.25, 1.125}}}, {{{12.25, -0x1p988}, {12.25, 0x1p-1074}}}, {0x1p805, 0.0}),
+                 Status::inaccurate);
+  expect_refused(hlcp<2>({{{0.0, 13.25}, {most, most}}}, {{{0.0, 13.25}, {3.0, 0x1p-926}}}, {-0x1p334, 0.0}),
+                 Status::inaccurate);
+}
+
+TEST(HlcpEdges, MinorsThatUnderflowDecideNothing) {
+  // The W-property holds; rows 1 and 3 over their largest entries leave b's minors below 2^-1074.
+  const Hlcp<3> one =
+      hlcp<3>({{{0x1p748, 11.75, 11.75}, {11.75, 11.75, 11.75}, {-0x1p987, 11.75, -16.0}}},
+              {{{most, 11.75, 11.75}, {11.75, 11.75, 11.75}, {11.75, 11.75, -0x1p567}}}, {11.75, 0.0, 0x1p374});
+  expect_refused(one, Status::inaccurate);
+}
+
+TEST(HlcpEdges, OneOfTwoSolutionsIsBeyondTheRangeFromEveryStart) {
+  expect_refused(hlcp<2>({{{-5.375, 3.875}, {0.0, 1.0}}}, {{{-2.125, -0x1p921}, {15.625, -14.75}}}, {0.0, most}),
+                 Status::inaccurate);
+}
+
+TEST(HlcpEdges, EntriesBelowTheRangeOfTheirRowDoNoHarmWhereTheirTermsAreNone) {
+  // 2^-1074 is lost beside 2^500, from starts that need scaling; x = (-2^-500, 1/2) all the same.
+  const Hlcp<2> problem = hlcp<2>({{{1.0, 0.0}, {0.0, 2.0}}}, {{{0x1p500, 0x1p-1074}, {0.0, 1.0}}}, {-1.0, 1.0});
+  for (unsigned code = 0; code < 4; ++code) {
+    const HlcpSolution<2> solution = answer(problem, code);
+    ASSERT_EQ(solution.status, Status::ok) << name(solution.status);
+    EXPECT_EQ(solution.uniqueness, Uniqueness::certified);
+    EXPECT_EQ(solution.x[0], -0x1p-500);
+    EXPECT_EQ(solution.x[1], 0.5);
+  }
+}
+
+TEST(HlcpEdges, ARankThatRestsOnRoundingIsRefused) {
+  // x2 = -0.375 satisfies the first equation, and the second but for its last digit; x1 is free.
+  const Hlcp<2> problem = hlcp<2>({}, {{{0.0, -14.59375}, {0.0, 19.416341145833332}}}, {5.47265625, -7.2811279296875});
+  expect_refused(problem, Status::singular_constraints);
+}
+
 }  // namespace

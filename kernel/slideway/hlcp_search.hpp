@@ -7,8 +7,6 @@
 
 namespace slideway::hlcp_detail {
 
-inline double larger(double a, double b) noexcept { return a > b ? a : b; }
-
 template <int Capacity>
 inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves,
                    double residual) noexcept {
@@ -39,8 +37,8 @@ template <int Capacity>
 struct Scaled {
   Hlcp<Capacity> problem;
   int exponent;
-  bool lost;      ///< a matrix entry below 2^-1022 of its row was rounded
-  Status status;  ///< ok, invalid_input, or inaccurate when a part of b was lost
+  bool lost;    ///< an entry below 2^-1022 of its row or of b was rounded, but none to zero
+  bool finite;  ///< all data are
 };
 
 inline int exponent_of(double value) noexcept {
@@ -58,13 +56,21 @@ inline double times_power(double value, int k) noexcept {
   return value;
 }
 
+/// value * 2^k; where that is too small to be exact, a neighbour of it that is not zero, and `lost`.
+inline double scaled_by(double value, int k, bool& lost) noexcept {
+  const double scaled = times_power(value, k);
+  if (times_power(scaled, -k) == value) return scaled;
+  lost = true;
+  return scaled != 0.0 ? scaled : std::copysign(0x1p-1074, value);
+}
+
 template <int Capacity>
 inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) noexcept {
   constexpr int none = -5000;
   int row_exponent[Capacity];
   scaled.exponent = none;
   scaled.lost = false;
-  scaled.status = Status::ok;
+  scaled.finite = true;
   for (int i = 0; i < n; ++i) {
     double largest = 0.0;
     bool finite = std::isfinite(given.b[i]);
@@ -72,7 +78,7 @@ inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) 
       finite = finite && std::isfinite(given.plus[i][j]) && std::isfinite(given.minus[i][j]);
       largest = larger(largest, larger(std::fabs(given.plus[i][j]), std::fabs(given.minus[i][j])));
     }
-    if (!finite) scaled.status = Status::invalid_input;
+    scaled.finite = scaled.finite && finite;
     row_exponent[i] = largest > 0.0 ? exponent_of(largest) : 0;
     const int relative = given.b[i] != 0.0 ? exponent_of(given.b[i]) - row_exponent[i] : none;
     scaled.exponent = relative > scaled.exponent ? relative : scaled.exponent;
@@ -81,14 +87,10 @@ inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) 
   for (int i = 0; i < n; ++i) {
     const int down = -row_exponent[i];
     for (int j = 0; j < n; ++j) {
-      scaled.problem.plus[i][j] = times_power(given.plus[i][j], down);
-      scaled.problem.minus[i][j] = times_power(given.minus[i][j], down);
-      scaled.lost = scaled.lost || times_power(scaled.problem.plus[i][j], -down) != given.plus[i][j] ||
-                    times_power(scaled.problem.minus[i][j], -down) != given.minus[i][j];
+      scaled.problem.plus[i][j] = scaled_by(given.plus[i][j], down, scaled.lost);
+      scaled.problem.minus[i][j] = scaled_by(given.minus[i][j], down, scaled.lost);
     }
-    scaled.problem.b[i] = times_power(given.b[i], down - scaled.exponent);
-    const bool kept = times_power(scaled.problem.b[i], scaled.exponent - down) == given.b[i];
-    if (!kept && scaled.status == Status::ok) scaled.status = Status::inaccurate;
+    scaled.problem.b[i] = scaled_by(given.b[i], down - scaled.exponent, scaled.lost);
   }
 }
 
@@ -223,7 +225,8 @@ inline void deliver(const Search<Capacity>& search, Uniqueness uniqueness, HlcpS
     x[k] = times_power(scaled, search.scaled.exponent);
     const double size = std::fabs(x[k]);
     good = good && (scaled == 0.0 || (size >= 0x1p-1022 && size < HUGE_VAL));
-    // A rounded entry is off by 2^-1075 at most: no harm below 2^100 beside terms of 2^-900.
+    // A rounded entry is off by 2^-1074 at most: no harm below 2^100 beside the terms of its row, of 2^-900 (check();
+    // a row that vanishes there vanishes in the problem given, since nothing was rounded to zero).
     good = good && !(search.scaled.lost && std::fabs(scaled) > 0x1p100);
   }
   if (!good) return refuse(solution, Status::inaccurate, search.solves);
@@ -274,6 +277,7 @@ inline void decide_small(Search<Capacity>& search, const signed char* first, con
   const bool several = decided.decision == Decision::several;
   if (decided.decision == Decision::none) return refuse(solution, Status::no_solution, search.solves);
   if (decided.decision == Decision::doubtful) return refuse(solution, Status::singular_constraints, search.solves);
+  if (decided.decision == Decision::hidden) return refuse(solution, Status::inaccurate, search.solves);
   if (several && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
   const Status status = finish(search, decided);
   if (status != Status::ok) return refuse(solution, several ? Status::not_unique : status, search.solves);
@@ -415,7 +419,7 @@ template <int Capacity>
   search.solves = solves;
   search.max_solves = options.max_solves;
   scale(given, n, search.scaled);
-  if (search.scaled.status != Status::ok) return refuse(solution, search.scaled.status, solves);
+  if (!search.scaled.finite) return refuse(solution, Status::invalid_input, solves);
   signed char first[hlcp_max_order];
   signed char signs[hlcp_max_order];
   const Word code = code_of(solution.sign, n);
