@@ -177,7 +177,8 @@ template <int Capacity, class Count>
 /// Solves A+ x+ - A- x- = b of order n (WWZ14 (18)), n a std::integral_constant<int, N> or an int.
 /// In `solution`: the signs to try first (of the last step, say). Requires max_solves >= 1.
 /// ok: x is finite, has its signs, and misses each equation by at most 5 (n + 1) 2^-53 of its terms' magnitudes;
-/// `certified` answers do not depend on the signs tried first. Else x and sign are untouched: invalid_input (not
+/// `certified` answers do not depend on the signs tried first; `unproven` ones (n > 4) say no more than this, and
+/// rounding may hide that there is no solution. Else x and sign are untouched: invalid_input (not
 /// finite; n not in 0..Capacity), no_solution, not_unique, singular_constraints (rank lost in working precision),
 /// inaccurate (residual, or x out of range), solve_limit.
 /// Every problem with n <= 4 is decided as exact arithmetic does, with two exceptions. A rank that rests on less than
