@@ -1,6 +1,5 @@
 #include "support/known.hpp"
 
-#include <cmath>
 #include <cstdio>
 
 namespace slideway::fuzz::known {
