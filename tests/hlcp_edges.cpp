@@ -339,4 +339,149 @@ TEST(HlcpEdges, ASubnormalRightSideIsScaledByItsOwnSize) {
   EXPECT_EQ(answer(problem).status, Status::no_solution) << name(answer(problem).status);
 }
 
+// ---- what underflow hides
+
+template <int N>
+void expect_refused(const Hlcp<N>& problem, Status status) {
+  for (unsigned code = 0; code < (1U << N); ++code)
+    for (const NotUnique policy : {NotUnique::refuse, NotUnique::continue_along_signs}) {
+      const HlcpSolution<N> solution = answer(problem, code, {policy});
+      EXPECT_EQ(name(solution.status), std::string(name(status))) << "from " << code;
+    }
+}
+
+TEST(HlcpEdges, ARowWhoseTermsUnderflowIsNotSatisfied) {
+  // x = (5e-324 / 12.25 times 5.7e-56, -5.7e-56): without x1's coefficient, which is lost beside 12.25 when rows are
+  // scaled, row 2 would be 12.25 x1 = 0.
+  expect_refused(hlcp<2>({{{12.25, -1.0}, {12.25, 1.125}}}, {{{12.25, -0x1p988}, {12.25, 0x1p-1074}}}, {0x1p805, 0.0}),
+                 Status::inaccurate);
+  expect_refused(hlcp<2>({{{0.0, 13.25}, {most, most}}}, {{{0.0, 13.25}, {3.0, 0x1p-926}}}, {-0x1p334, 0.0}),
+                 Status::inaccurate);
+}
+
+TEST(HlcpEdges, MinorsThatUnderflowDecideNothing) {
+  // The W-property holds; rows 1 and 3 over their largest entries leave b's minors below 2^-1074.
+  const Hlcp<3> one =
+      hlcp<3>({{{0x1p748, 11.75, 11.75}, {11.75, 11.75, 11.75}, {-0x1p987, 11.75, -16.0}}},
+              {{{most, 11.75, 11.75}, {11.75, 11.75, 11.75}, {11.75, 11.75, -0x1p567}}}, {11.75, 0.0, 0x1p374});
+  expect_refused(one, Status::inaccurate);
+}
+
+TEST(HlcpEdges, OneOfTwoSolutionsIsBeyondTheRangeFromEveryStart) {
+  expect_refused(hlcp<2>({{{-5.375, 3.875}, {0.0, 1.0}}}, {{{-2.125, -0x1p921}, {15.625, -14.75}}}, {0.0, most}),
+                 Status::inaccurate);
+}
+
+TEST(HlcpEdges, EntriesBelowTheRangeOfTheirRowDoNoHarmWhereTheirTermsAreNone) {
+  // 2^-1074 is lost beside 2^500, from starts that need scaling; x = (-2^-500, 1/2) all the same.
+  const Hlcp<2> problem = hlcp<2>({{{1.0, 0.0}, {0.0, 2.0}}}, {{{0x1p500, 0x1p-1074}, {0.0, 1.0}}}, {-1.0, 1.0});
+  for (unsigned code = 0; code < 4; ++code) {
+    const HlcpSolution<2> solution = answer(problem, code);
+    ASSERT_EQ(solution.status, Status::ok) << name(solution.status);
+    EXPECT_EQ(solution.uniqueness, Uniqueness::certified);
+    EXPECT_EQ(solution.x[0], -0x1p-500);
+    EXPECT_EQ(solution.x[1], 0.5);
+  }
+}
+
+TEST(HlcpEdges, ARankThatRestsOnRoundingIsRefused) {
+  // x2 = -0.375 satisfies the first equation, and the second but for its last digit; x1 is free.
+  const Hlcp<2> problem = hlcp<2>({}, {{{0.0, -14.59375}, {0.0, 19.416341145833332}}}, {5.47265625, -7.2811279296875});
+  expect_refused(problem, Status::singular_constraints);
+}
+
+// ---- what rounding hides above order four
+
+/// Neither `not_unique` nor ok and `refuted`, from any start.
+void expect_no_claim_of_several(const Hlcp<5>& problem) {
+  for (unsigned code = 0; code < 32; ++code) {
+    EXPECT_NE(answer(problem, code).status, Status::not_unique) << "from " << code;
+    const HlcpSolution<5> solution = answer(problem, code, {NotUnique::continue_along_signs});
+    EXPECT_NE(name(solution.uniqueness), std::string("refuted")) << "from " << code;
+    EXPECT_NE(name(solution.uniqueness), std::string("certified")) << "from " << code;
+  }
+}
+
+TEST(HlcpEdges, SolutionsThatRoundingMakesAreNotCounted) {
+  // The last row is three times the first, of b it is not: no solution.
+  expect_no_claim_of_several(hlcp<5>({{{-1.875, -1.875, -1.875, -1.875, -1.875},
+                                       {10.75, -10.0, 0.0, -1.875, 3.125},
+                                       {-1.875, -1.875, -1.875, -1.875, 14.625},
+                                       {-2.5, 1.375, 2.5, 0.0, 0.125},
+                                       {-5.625, -5.625, -5.625, -5.625, -5.625}}},
+                                     {{{-1.875, -11.375, -1.875, -1.875, 11.625},
+                                       {-13.0, -5.375, 0.0, -1.875, -1.875},
+                                       {-1.875, -1.875, -1.875, 14.875, -3.75},
+                                       {0.5, -0.125, -4.5, -0.875, 0.5},
+                                       {-5.625, -34.125, -5.625, -5.625, 34.875}}},
+                                     {-2.0, -1.875, 0.125, 0.0, 14.875}));
+  // One solution.
+  expect_no_claim_of_several(hlcp<5>({{{-1.875, 0.0, -7.5, -1.875, -1.875},
+                                       {10.75, -7.125, 0.0, 0.0, 0.0},
+                                       {0.0, 0.0, 2.375, 0.0, -2.25},
+                                       {0.0, -0.625, -0.625, -0.625, -0.625},
+                                       {-0.625, -0.625, -0.625, -0.625, -0.625}}},
+                                     {{{-0.125, 0.0, -1.875, -1.875, 11.625},
+                                       {-13.0, 0.0, 0.0, 0.0, 0.0},
+                                       {0.0, -0.25, -0.125, 0.0, 15.125},
+                                       {0.0, -0.625, -0.625, -0.625, -0.625},
+                                       {-0.625, -0.625, -0.625, -0.625, -0.625}}},
+                                     {-2.0, -15.625, 8.375, -0.625, 0.0}));
+}
+
+TEST(HlcpEdges, ASolutionThatRoundingMakesIsUnproven) {
+  // x = (0, 0, -16, 10.625, 10.625) misses the first equation by rounding alone, in digits beyond 1e-14; x1 and x2,
+  // which would have to pay for it, have wrong signs then.
+  const Hlcp<5> problem = hlcp<5>({{{-10.5, 6.000000000000021, -15.250000000000217, -12.750000000000181, -13.25},
+                                    {0.0, 0.0, 0.0, -2.75, -2.5},
+                                    {-1.25, 0.0, 0.0, 0.0, 9.75},
+                                    {-9.0, -9.0, -9.0, -9.0, 0.0},
+                                    {0.0, 0.0, -9.0, -9.0, -9.0}}},
+                                  {{{14.5, 14.5, 14.0, -12.0, 9.75},
+                                    {0.0, 0.0, 0.0, -1.25, -1.0},
+                                    {0.0, 0.25, 0.0, 0.0, -9.0},
+                                    {-9.0, -9.0, -9.0, -4.5, 0.0},
+                                    {0.0, 0.0, -9.0, -9.0, -9.0}}},
+                                  {-500.25, -55.78125, 103.59375, 48.375, -47.25});
+  for (unsigned code = 0; code < 32; ++code)
+    EXPECT_EQ(name(answer(problem, code).uniqueness), std::string("unproven")) << "from " << code;
+}
+
+TEST(HlcpEdges, ACertifiedTieHasTheSameBitsFromEveryStart) {
+  // x1 alone is clearly not zero, and from some starts the proof succeeds only at another pattern of the tie.
+  const Hlcp<5> problem = hlcp<5>({{{2.2158381900172497e-18, -3.2271955290388843e-18, -2.0244087439377778e-19,
+                                     3.3322276144984175e-18, -4.743384504624082e-20},
+                                    {-3.025601687592361e-18, 2.332898143327794e-17, 8.351744859927401e-19,
+                                     -1.1304501714055892e-17, 9.131015171401358e-19},
+                                    {-4.1504614415460717e-20, 7.555533889508359e-19, 7.820655201998955e-18,
+                                     -3.1340219048409113e-19, 1.8151916059659656e-18},
+                                    {3.3322276144984175e-18, -1.1409533799515426e-17, -3.1340219048409113e-19,
+                                     1.408700494578627e-17, -4.379160337304733e-19},
+                                    {-1.0164395367051604e-19, 9.147955830346444e-19, 2.0286439086740493e-18,
+                                     -4.2436350657440447e-19, 1.3069718376133854e-18}}},
+                                  {{{2.3513634615779377e-18, -3.0815058621111446e-18, 2.31239994600424e-19,
+                                     3.765908483492619e-18, -2.608861477543245e-19},
+                                    {-3.283099703557668e-18, 2.2946122541118996e-17, 6.454391058077769e-19,
+                                     -1.1080885015980757e-17, 9.131015171401358e-19},
+                                    {7.030373462210693e-20, 7.250602028496811e-19, 8.254336070993157e-18,
+                                     1.2027867851011065e-19, 2.2488724749601674e-18},
+                                    {3.765908483492619e-18, -1.0975852930521224e-17, 1.2027867851011065e-19,
+                                     1.406328802326315e-17, -4.2097537478538727e-19},
+                                    {-2.0667603913004928e-19, 9.114074512456272e-19, 2.0354201722520837e-18,
+                                     -4.345279019414561e-19, 1.300195574035351e-18}}},
+                                  {-3.26317231788267e-35, 4.5562161037871864e-35, -9.756603111824986e-37,
+                                   -5.22624788375589e-35, 2.8682062160063815e-36});
+  const HlcpSolution<5> first = answer(problem);
+  int certified = 0;
+  for (unsigned code = 0; code < 32; ++code) {
+    const HlcpSolution<5> solution = answer(problem, code);
+    ASSERT_EQ(solution.status, Status::ok) << name(solution.status);
+    if (solution.uniqueness != Uniqueness::certified) continue;
+    ++certified;
+    for (int k = 0; k < 5; ++k) EXPECT_EQ(solution.x[k], first.x[k]) << k << " from " << code;
+  }
+  EXPECT_GT(certified, 1);
+  EXPECT_EQ(first.uniqueness, Uniqueness::certified);
+}
+
 }  // namespace

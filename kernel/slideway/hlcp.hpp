@@ -177,10 +177,14 @@ template <int Capacity, class Count>
 /// Solves A+ x+ - A- x- = b of order n (WWZ14 (18)), n a std::integral_constant<int, N> or an int.
 /// In `solution`: the signs to try first (of the last step, say). Requires max_solves >= 1.
 /// ok: x is finite, has its signs, and misses each equation by at most 5 (n + 1) 2^-53 of its terms' magnitudes;
-/// `certified` answers do not depend on the signs tried first. Else x and sign are untouched: invalid_input (not
+/// `certified` answers do not depend on the signs tried first; `unproven` ones (n > 4) say no more than this, and
+/// rounding may hide that there is no solution. Else x and sign are untouched: invalid_input (not
 /// finite; n not in 0..Capacity), no_solution, not_unique, singular_constraints (rank lost in working precision),
-/// inaccurate (residual, or x out of range), solve_limit. Every problem with n <= 4 is decided. Cost: with the right
-/// signs one LU factorization, O(n^2) for the certificate; otherwise up to max_solves of them.
+/// inaccurate (residual, or x out of range), solve_limit.
+/// Every problem with n <= 4 is decided as exact arithmetic does, with two exceptions. A rank that rests on less than
+/// 2^-49 of a minor's terms: the rounding of the data would decide, so singular_constraints. And, rows and b over their
+/// largest entries, an entry below 2^-180 beside which a minor is below 2^-900: underflow would decide, so inaccurate.
+/// Cost: with the right signs one LU factorization, O(n^2) for the certificate; otherwise up to max_solves of them.
 template <int Capacity, class Count>
 inline void solve(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                   HlcpOptions options = {}) noexcept {

@@ -31,11 +31,12 @@ struct ExactSum {
     size = kept;
   }
 
-  int sign() const noexcept { return size == 0 ? 0 : (part[size - 1] > 0.0 ? 1 : -1); }
+  /// The largest part: it has the sum's sign, and its size but for 2^-52 of it.
+  double leading() const noexcept { return size == 0 ? 0.0 : part[size - 1]; }
 };
 
-/// Problem data of order n <= 4, scaled to about 1. Exact signs need every nonzero magnitude in [2^-180, 2^220]:
-/// products of four and their errors then neither overflow nor underflow.
+/// Problem data of order n <= 4, scaled to below 2. Signs are exact where every nonzero magnitude is at least 2^-180:
+/// products of four, of at least 2^-720, and their errors, of 2^-928, then do not underflow.
 template <int Order>
 struct Small {
   double plus[Order][Order];
@@ -43,7 +44,12 @@ struct Small {
   double b[Order];
   int n;
   bool within_range;
+  bool hidden = false;  ///< the sign of some minor that was asked for is lost in underflow
 };
+
+/// What a determinant must exceed for its sign to count where its products may underflow: 192 of them and their errors,
+/// each off by 2^-1074 times at most three factors below 2 and a few roundings, make less than 2^-1050.
+inline constexpr double visible = 0x1p-900;
 
 template <int Order>
 struct Minor {
@@ -80,9 +86,10 @@ inline Determinant determinant(const Minor<Order>& minor) noexcept {
   return of[(1 << minor.m) - 1];
 }
 
-/// sign det(a), exactly: all m! terms as sums of 2^(m-1) doubles. At most 192 additions of at most 192 parts.
+/// det(a) rounded once, so that its sign is exact: all m! terms as sums of 2^(m-1) doubles. At most 192 additions of at
+/// most 192 parts.
 template <int Order>
-inline int exact_sign(const Minor<Order>& minor) noexcept {
+inline double exact_determinant(const Minor<Order>& minor) noexcept {
   const int m = minor.m < Order ? minor.m : Order;
   ExactSum<Order> sum;
   int column[Order];
@@ -103,24 +110,28 @@ inline int exact_sign(const Minor<Order>& minor) noexcept {
       if (part[k] != 0.0) sum.add(part[k]);
     if (!std::next_permutation(column, column + m)) break;
   }
-  return sum.sign();
+  return sum.leading();
 }
 
 struct Sign {
   int sign;
-  bool frail;  ///< not zero, but indistinguishable from zero in working precision; or not decidable in its range
+  bool frail;  ///< indistinguishable from zero in working precision, though it is not zero or hidden
 };
 
+/// The sign of a minor of p.
 template <int Order>
-inline Sign sign_of(const Minor<Order>& minor, bool within_range) noexcept {
+inline Sign sign_of(const Minor<Order>& minor, Small<Order>& p) noexcept {
   const Determinant det = determinant(minor);
-  const double doubt = 0x1p-49 * det.size;
+  const double doubt = larger(0x1p-49 * det.size, p.within_range ? 0.0 : visible);
   if (det.value > doubt) return {1, false};
   if (det.value < -doubt) return {-1, false};
-  if (det.size == 0.0 && within_range) return {0, false};
-  if (!within_range) return {0, true};
-  const int sign = exact_sign(minor);
-  return {sign, sign != 0};
+  if (det.size == 0.0 && p.within_range) return {0, false};
+  const double exact = exact_determinant(minor);
+  if (!p.within_range && !(std::fabs(exact) > visible)) {
+    p.hidden = true;
+    return {0, true};
+  }
+  return {(exact > 0.0) - (exact < 0.0), exact != 0.0};
 }
 
 /// Column k of W(signs); k = n is b.
@@ -157,11 +168,11 @@ struct Basis {
 };
 
 template <int Order>
-inline Basis basis_of(const Small<Order>& p, const int* columns, int m, const signed char* signs) noexcept {
+inline Basis basis_of(Small<Order>& p, const int* columns, int m, const signed char* signs) noexcept {
   Basis found = {0, {0, false}};
   for (int rows = 0; rows < (1 << p.n); ++rows) {
     if (count(rows) != m) continue;
-    const Sign det = sign_of(minor_of(p, rows, columns, m, signs), p.within_range);
+    const Sign det = sign_of(minor_of(p, rows, columns, m, signs), p);
     if (det.sign != 0 && !det.frail) return {rows, det};
     if (det.sign != 0 || (det.frail && found.rows == 0)) found = {det.sign != 0 ? rows : 0, det};
   }
@@ -170,11 +181,11 @@ inline Basis basis_of(const Small<Order>& p, const int* columns, int m, const si
 
 /// Whether the columns and one more depend on each other in every row, given that they do in the basis rows.
 template <int Order>
-inline bool dependent_elsewhere(const Small<Order>& p, int basis, const int* columns, int m, const signed char* signs,
+inline bool dependent_elsewhere(Small<Order>& p, int basis, const int* columns, int m, const signed char* signs,
                                 bool& frail) noexcept {
   for (int row = 0; row < p.n; ++row) {
     if (((basis >> row) & 1) != 0) continue;
-    const Sign det = sign_of(minor_of(p, basis | (1 << row), columns, m, signs), p.within_range);
+    const Sign det = sign_of(minor_of(p, basis | (1 << row), columns, m, signs), p);
     frail = frail || det.frail;
     if (det.sign != 0) return false;
   }
@@ -191,7 +202,7 @@ struct Vertex {
 /// Whether there is a solution with exactly the signs sigma in {-1, 0, 1}^n whose columns are independent: a vertex of
 /// the solution set.
 template <int Order>
-inline Vertex<Order> vertex_at(const Small<Order>& p, const signed char* sigma) noexcept {
+inline Vertex<Order> vertex_at(Small<Order>& p, const signed char* sigma) noexcept {
   Vertex<Order> vertex = {false, false, {}};
   int columns[Order + 1] = {};
   int m = 0;
@@ -208,7 +219,7 @@ inline Vertex<Order> vertex_at(const Small<Order>& p, const signed char* sigma) 
     columns[k] = p.n;
     const Minor<Order> numerator = minor_of(p, basis.rows, columns, m, sigma);
     columns[k] = column;
-    if (sign_of(numerator, p.within_range).sign * basis.det.sign != sigma[column]) return vertex;
+    if (sign_of(numerator, p).sign * basis.det.sign != sigma[column]) return vertex;
     vertex.x[column] = determinant(numerator).value / det;
   }
   vertex.exists = true;
@@ -218,7 +229,7 @@ inline Vertex<Order> vertex_at(const Small<Order>& p, const signed char* sigma) 
 /// Whether the columns with signs tau != 0 have a null vector with exactly these signs, and no smaller set of them has
 /// one: an extreme ray.
 template <int Order>
-inline bool ray_at(const Small<Order>& p, const signed char* tau, bool& frail) noexcept {
+inline bool ray_at(Small<Order>& p, const signed char* tau, bool& frail) noexcept {
   int columns[Order] = {};
   int m = 0;
   for (int k = 0; k < p.n; ++k)
@@ -231,7 +242,7 @@ inline bool ray_at(const Small<Order>& p, const signed char* tau, bool& frail) n
     int size = 0;
     for (int i = 0; i < m; ++i)
       if (i != k) others[size++] = columns[i];
-    const int det = m == 1 ? 1 : sign_of(minor_of(p, basis.rows, others, size, tau), p.within_range).sign;
+    const int det = m == 1 ? 1 : sign_of(minor_of(p, basis.rows, others, size, tau), p).sign;
     const int component = ((k & 1) != 0 ? -det : det) * tau[columns[k]];
     if (component == 0 || component == -direction) return false;
     direction = component;
@@ -239,7 +250,7 @@ inline bool ray_at(const Small<Order>& p, const signed char* tau, bool& frail) n
   return true;
 }
 
-enum class Decision : unsigned char { certified, single, several, none, doubtful };
+enum class Decision : unsigned char { certified, single, several, none, doubtful, hidden };
 
 /// What is true of a small problem.
 template <int Order>
@@ -263,7 +274,7 @@ inline void pattern(int code, int n, int base, signed char* signs) noexcept {
 /// Whether all 2^n determinants of W(s) have one strict sign: the column W-property (Sznajder & Gowda 1995), that is,
 /// one solution for every b.
 template <int Order>
-inline bool has_w_property(const Small<Order>& p, bool& frail) noexcept {
+inline bool has_w_property(Small<Order>& p, bool& frail) noexcept {
   int columns[Order];
   for (int k = 0; k < Order; ++k) columns[k] = k;
   int common = 0;
@@ -271,7 +282,7 @@ inline bool has_w_property(const Small<Order>& p, bool& frail) noexcept {
   for (int code = 0; code < (1 << p.n); ++code) {
     signed char signs[Order];
     pattern(code, p.n, 2, signs);
-    const Sign det = sign_of(minor_of(p, (1 << p.n) - 1, columns, p.n, signs), p.within_range);
+    const Sign det = sign_of(minor_of(p, (1 << p.n) - 1, columns, p.n, signs), p);
     frail = frail || det.frail;
     if (det.sign == 0 || det.sign == -common) holds = false;
     common = det.sign;
@@ -288,7 +299,7 @@ inline bool compatible(const signed char* sigma, const signed char* tau, int n) 
 
 /// Whether a ray starts at the vertex sigma inside an orthant: a continuum of solutions.
 template <int Order>
-inline bool has_ray(const Small<Order>& p, const signed char* sigma, int codes, bool& frail) noexcept {
+inline bool has_ray(Small<Order>& p, const signed char* sigma, int codes, bool& frail) noexcept {
   for (int code = 0; code < codes; ++code) {
     signed char tau[Order];
     pattern(code, p.n, 3, tau);
@@ -305,7 +316,7 @@ inline bool has_ray(const Small<Order>& p, const signed char* sigma, int codes, 
 /// the one with the signs `preferred`, else `second`, else the first. At most 3^n = 81 supports of at most 2 * 6 minors
 /// each.
 template <int Order>
-inline Decided<Order> decide(const Small<Order>& p, const signed char* preferred, const signed char* second) noexcept {
+inline Decided<Order> decide(Small<Order>& p, const signed char* preferred, const signed char* second) noexcept {
   Decided<Order> result = {Decision::none, {}, {}, false, 1 << p.n};
   bool frail = false;
   const bool unique = has_w_property(p, frail);
@@ -333,14 +344,15 @@ inline Decided<Order> decide(const Small<Order>& p, const signed char* preferred
     sound += vertex.frail ? 0 : 1;
   }
   if (found == 0) {
-    result.decision = frail || !p.within_range ? Decision::doubtful : Decision::none;
+    result.decision = frail ? Decision::doubtful : Decision::none;
   } else if (unique) {
     result.decision = Decision::certified;
   } else if (found > 1 || has_ray(p, result.sigma, codes, frail)) {
     result.decision = sound >= 1 && (sound >= 2 || found == 1) ? Decision::several : Decision::doubtful;
   } else {
-    result.decision = p.within_range ? Decision::single : Decision::doubtful;
+    result.decision = Decision::single;
   }
+  if (p.hidden && result.decision != Decision::certified) result.decision = Decision::hidden;
   return result;
 }
 

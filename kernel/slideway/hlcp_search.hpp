@@ -7,8 +7,6 @@
 
 namespace slideway::hlcp_detail {
 
-inline double larger(double a, double b) noexcept { return a > b ? a : b; }
-
 template <int Capacity>
 inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves,
                    double residual) noexcept {
@@ -39,8 +37,8 @@ template <int Capacity>
 struct Scaled {
   Hlcp<Capacity> problem;
   int exponent;
-  bool lost;      ///< a matrix entry below 2^-1022 of its row was rounded
-  Status status;  ///< ok, invalid_input, or inaccurate when a part of b was lost
+  bool lost;    ///< an entry below 2^-1022 of its row or of b was rounded, but none to zero
+  bool finite;  ///< all data are
 };
 
 inline int exponent_of(double value) noexcept {
@@ -58,13 +56,21 @@ inline double times_power(double value, int k) noexcept {
   return value;
 }
 
+/// value * 2^k; where that is too small to be exact, a neighbour of it that is not zero, and `lost`.
+inline double scaled_by(double value, int k, bool& lost) noexcept {
+  const double scaled = times_power(value, k);
+  if (times_power(scaled, -k) == value) return scaled;
+  lost = true;
+  return scaled != 0.0 ? scaled : std::copysign(0x1p-1074, value);
+}
+
 template <int Capacity>
 inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) noexcept {
   constexpr int none = -5000;
   int row_exponent[Capacity];
   scaled.exponent = none;
   scaled.lost = false;
-  scaled.status = Status::ok;
+  scaled.finite = true;
   for (int i = 0; i < n; ++i) {
     double largest = 0.0;
     bool finite = std::isfinite(given.b[i]);
@@ -72,7 +78,7 @@ inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) 
       finite = finite && std::isfinite(given.plus[i][j]) && std::isfinite(given.minus[i][j]);
       largest = larger(largest, larger(std::fabs(given.plus[i][j]), std::fabs(given.minus[i][j])));
     }
-    if (!finite) scaled.status = Status::invalid_input;
+    scaled.finite = scaled.finite && finite;
     row_exponent[i] = largest > 0.0 ? exponent_of(largest) : 0;
     const int relative = given.b[i] != 0.0 ? exponent_of(given.b[i]) - row_exponent[i] : none;
     scaled.exponent = relative > scaled.exponent ? relative : scaled.exponent;
@@ -81,14 +87,10 @@ inline void scale(const Hlcp<Capacity>& given, int n, Scaled<Capacity>& scaled) 
   for (int i = 0; i < n; ++i) {
     const int down = -row_exponent[i];
     for (int j = 0; j < n; ++j) {
-      scaled.problem.plus[i][j] = times_power(given.plus[i][j], down);
-      scaled.problem.minus[i][j] = times_power(given.minus[i][j], down);
-      scaled.lost = scaled.lost || times_power(scaled.problem.plus[i][j], -down) != given.plus[i][j] ||
-                    times_power(scaled.problem.minus[i][j], -down) != given.minus[i][j];
+      scaled.problem.plus[i][j] = scaled_by(given.plus[i][j], down, scaled.lost);
+      scaled.problem.minus[i][j] = scaled_by(given.minus[i][j], down, scaled.lost);
     }
-    scaled.problem.b[i] = times_power(given.b[i], down - scaled.exponent);
-    const bool kept = times_power(scaled.problem.b[i], scaled.exponent - down) == given.b[i];
-    if (!kept && scaled.status == Status::ok) scaled.status = Status::inaccurate;
+    scaled.problem.b[i] = scaled_by(given.b[i], down - scaled.exponent, scaled.lost);
   }
 }
 
@@ -223,7 +225,8 @@ inline void deliver(const Search<Capacity>& search, Uniqueness uniqueness, HlcpS
     x[k] = times_power(scaled, search.scaled.exponent);
     const double size = std::fabs(x[k]);
     good = good && (scaled == 0.0 || (size >= 0x1p-1022 && size < HUGE_VAL));
-    // A rounded entry is off by 2^-1075 at most: no harm below 2^100 beside terms of 2^-900.
+    // A rounded entry is off by 2^-1074 at most: no harm below 2^100 beside the terms of its row, of 2^-900 (check();
+    // a row that vanishes there vanishes in the problem given, since nothing was rounded to zero).
     good = good && !(search.scaled.lost && std::fabs(scaled) > 0x1p100);
   }
   if (!good) return refuse(solution, Status::inaccurate, search.solves);
@@ -274,6 +277,7 @@ inline void decide_small(Search<Capacity>& search, const signed char* first, con
   const bool several = decided.decision == Decision::several;
   if (decided.decision == Decision::none) return refuse(solution, Status::no_solution, search.solves);
   if (decided.decision == Decision::doubtful) return refuse(solution, Status::singular_constraints, search.solves);
+  if (decided.decision == Decision::hidden) return refuse(solution, Status::inaccurate, search.solves);
   if (several && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
   const Status status = finish(search, decided);
   if (status != Status::ok) return refuse(solution, several ? Status::not_unique : status, search.solves);
@@ -285,96 +289,93 @@ inline void decide_small(Search<Capacity>& search, const signed char* first, con
 }
 
 /// What enumeration of all sign patterns has seen.
-template <int Capacity>
 struct Census {
-  double x[Capacity];
-  signed char sign[hlcp_max_order];
-  int solutions;  ///< 0, 1, or 2 for several
-  bool doubtful;  ///< some pattern is neither a solution nor excluded beyond rounding errors
+  signed char sign[hlcp_max_order];  ///< the first pattern whose x is a solution, a proven one if there is one
+  bool found;                        ///< there is such a pattern
+  int proven;     ///< patterns that certainly have a solution with no zero in it: all of these differ
+  bool doubtful;  ///< some pattern is neither proven nor excluded beyond rounding errors
 };
 
-/// Whether some sign of x is wrong beyond all rounding errors. |x - W^-1 b| <= |W^-1| r for the residual r allowed, and
-/// |W^-1| r is at most twice its bound from L and U, in the largest component, if their errors cannot make W singular.
+/// A bound on |x - W^-1 b| in the largest component; infinite where W may be singular. |x - W^-1 b| <= |W^-1| r for the
+/// residual r allowed, and |W^-1| r is at most twice its bound from L and U if their errors cannot make W singular.
+/// Entries that scale() has rounded are none of these errors.
 template <int Capacity>
-inline bool excludes(const Search<Capacity>& search, const signed char* signs) noexcept {
+inline double error_of(const Search<Capacity>& search) noexcept {
   const Trial<Capacity>& trial = search.trial;
   const Hlcp<Capacity>& problem = search.scaled.problem;
   const int n = search.n;
   double r[Capacity] = {};
   double z[Capacity];
-  if (!(lu_error(trial, n) * reach_of(trial, n, trial.size, z) <= 0.5)) return false;
+  if (search.scaled.lost || !(lu_error(trial, n) * reach_of(trial, n, trial.size, z) <= 0.5)) return HUGE_VAL;
   for (int i = 0; i < n; ++i) {
     r[i] = std::fabs(problem.b[i]);
     for (int j = 0; j < n; ++j) r[i] += std::fabs(trial.w[i][j] * trial.x[j]);
     r[i] *= 2.0 * residual_limit(n);
   }
-  const double error = 2.0 * reach_of(trial, n, r, z);
-  for (int k = 0; k < n; ++k)
-    if (signs[k] * trial.x[k] < -error) return true;
-  return false;
+  return 2.0 * reach_of(trial, n, r, z);
 }
 
-/// Enters the pattern just tried. Solutions that are too near to be told apart by distance are one if no component has
-/// opposite signs: then both solve the nonsingular pattern of either. Else rounding decides, and nothing is certain.
+/// Enters the pattern just tried. It has a solution if all components of W^-1 b have its signs, and none if one has
+/// not.
 template <int Capacity>
-inline void enter(Search<Capacity>& search, const signed char* signs, bool accurate,
-                  Census<Capacity>& census) noexcept {
-  const Trial<Capacity>& trial = search.trial;
-  const bool excluded = accurate && excludes(search, signs);
-  if (!accurate || !settle(search, signs)) {
-    census.doubtful = census.doubtful || !excluded;
-    return;
+inline void enter(Search<Capacity>& search, const signed char* signs, bool accurate, Census& census) noexcept {
+  const double error = accurate ? error_of(search) : HUGE_VAL;
+  bool proven = true;
+  bool excluded = false;
+  for (int k = 0; k < search.n && accurate; ++k) {
+    const double along = signs[k] * search.trial.x[k];
+    proven = proven && along > error;
+    excluded = excluded || along < -error;
   }
-  double largest = 0.0;
-  double distance = 0.0;
-  bool opposite = false;
-  for (int k = 0; k < search.n; ++k) {
-    largest = larger(largest, std::fabs(trial.x[k]));
-    distance = larger(distance, std::fabs(trial.x[k] - census.x[k]));
-    opposite = opposite || (trial.x[k] < 0.0 ? census.x[k] > 0.0 : trial.x[k] > 0.0 && census.x[k] < 0.0);
-  }
-  if (census.solutions == 0) {
-    std::memcpy(census.x, trial.x, sizeof census.x);
+  proven = proven && accurate;
+  census.doubtful = census.doubtful || !(proven || excluded);
+  if (proven ? census.proven == 0 : !census.found && !excluded && accurate && settle(search, signs)) {
     std::memcpy(census.sign, signs, sizeof census.sign);
-    census.solutions = 1;
-  } else if (distance > tie_window * largest) {
-    census.solutions = 2;
-  } else if (opposite) {
-    census.doubtful = true;
+    census.found = true;
   }
+  census.proven += proven ? 1 : 0;
 }
 
 /// All 2^n sign patterns, as far as max_solves goes: for problems that the iterations could not solve, n > 4.
 template <int Capacity>
 inline void enumerate(Search<Capacity>& search, NotUnique policy, HlcpSolution<Capacity>& solution) noexcept {
-  Census<Capacity> census = {};
+  Census census = {};
   signed char signs[hlcp_max_order] = {};
   const Word last = ~Word{0} >> (64 - search.n);  // no 2^n to count to: for n = 64 there is none
   bool complete = false;
-  for (Word code = 0; !complete && census.solutions < 2 && search.solves < search.max_solves; ++code) {
+  for (Word code = 0; !complete && census.proven < 2 && search.solves < search.max_solves; ++code) {
     signs_of(code, search.n, signs);
     const bool accurate = try_signs(search, signs);
     enter(search, signs, accurate, census);
     complete = code == last;
   }
-  if (census.solutions == 0)
+  if (!census.found)
     return refuse(solution,
                   !complete         ? Status::solve_limit
                   : census.doubtful ? Status::singular_constraints
                                     : Status::no_solution,
                   search.solves);
-  if (census.solutions == 2 && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
+  if (census.proven == 2 && policy == NotUnique::refuse) return refuse(solution, Status::not_unique, search.solves);
   if (!try_signs(search, census.sign) || !settle(search, census.sign))
     return refuse(solution, Status::inaccurate, search.solves);
   deliver(search,
-          census.solutions == 2          ? Uniqueness::refuted
+          census.proven == 2             ? Uniqueness::refuted
           : complete && !census.doubtful ? Uniqueness::single
                                          : Uniqueness::unproven,
           solution);
 }
 
-/// The order is above 4: iterations from the signs given; near a tie again from signs that do not depend on them;
-/// enumeration if they fail.
+/// Signs to start from again after a tie: + for what may owe its sign to rounding, else those given.
+template <int Capacity>
+inline void without_ties(const Search<Capacity>& search, const signed char* signs, signed char* start) noexcept {
+  double largest = 0.0;
+  for (int k = 0; k < search.n; ++k) largest = larger(largest, std::fabs(search.trial.x[k]));
+  for (int k = 0; k < search.n; ++k)
+    start[k] = std::fabs(search.trial.x[k]) <= tie_window * largest ? static_cast<signed char>(1) : signs[k];
+}
+
+/// The order is above 4: iterations from the signs given; enumeration if they fail. Near a tie several patterns may be
+/// of one solution, each with its own rounding: what is certified is then found from + for all signs.
 template <int Capacity>
 inline void search_large(Search<Capacity>& search, signed char* signs, NotUnique policy,
                          HlcpSolution<Capacity>& solution) noexcept {
@@ -385,24 +386,25 @@ inline void search_large(Search<Capacity>& search, signed char* signs, NotUnique
     if (zero)
       return refuse(solution, problem.b[i] != 0.0 ? Status::no_solution : Status::singular_constraints, search.solves);
   }
-  const Found found = find(search, signs);
-  if (found == Found::limit) return refuse(solution, Status::solve_limit, search.solves);
+  Found found = find(search, signs);
   if (found == Found::nothing) return enumerate(search, policy, solution);
-  bool proven = contracts(problem, search.n, search.trial);
-  if (!clear(search.trial.x, search.n, signs)) {
-    double largest = 0.0;
-    for (int k = 0; k < search.n; ++k) largest = larger(largest, std::fabs(search.trial.x[k]));
-    signed char start[hlcp_max_order];
-    for (int k = 0; k < search.n; ++k) {
-      const bool tie = std::fabs(search.trial.x[k]) <= tie_window * largest;
-      start[k] = proven || tie ? static_cast<signed char>(1) : signs[k];
-    }
-    const Found again = find(search, start);
-    if (again == Found::limit) return refuse(solution, Status::solve_limit, search.solves);
-    if (again == Found::nothing && find(search, signs) != Found::solution)
-      return refuse(solution, Status::inaccurate, search.solves);
-    proven = proven || contracts(problem, search.n, search.trial);
+  bool proven = found == Found::solution && contracts(problem, search.n, search.trial);
+  const bool tie = found == Found::solution && !clear(search.trial.x, search.n, signs);
+  signed char start[hlcp_max_order];
+  if (tie && !proven) {
+    without_ties(search, signs, start);
+    found = find(search, start);
+    if (found == Found::nothing) found = find(search, signs);
+    proven = found == Found::solution && contracts(problem, search.n, search.trial);
   }
+  if (tie && proven) {
+    signs_of(0, search.n, start);
+    found = find(search, start);
+    proven = found == Found::solution;
+    if (found == Found::nothing) found = find(search, signs);
+  }
+  if (found == Found::limit) return refuse(solution, Status::solve_limit, search.solves);
+  if (found == Found::nothing) return refuse(solution, Status::inaccurate, search.solves);
   deliver(search, proven ? Uniqueness::certified : Uniqueness::unproven, solution);
 }
 
@@ -415,7 +417,7 @@ template <int Capacity>
   search.solves = solves;
   search.max_solves = options.max_solves;
   scale(given, n, search.scaled);
-  if (search.scaled.status != Status::ok) return refuse(solution, search.scaled.status, solves);
+  if (!search.scaled.finite) return refuse(solution, Status::invalid_input, solves);
   signed char first[hlcp_max_order];
   signed char signs[hlcp_max_order];
   const Word code = code_of(solution.sign, n);

@@ -96,13 +96,19 @@ void scale(Choices& choices, HlcpCase& problem) {
   for (int i = 0; i < problem.n; ++i) problem.data.b[i] *= right;
 }
 
-/// The last bits of some entries: a relative 2^-52 to 2^-27, that is 1.5e-8.
+/// 1 but for the last bits: 2^-52 to 2^-27, that is 1.5e-8.
+double nearly_one(Choices& choices) {
+  const double sign = choices.flag() ? 1 : -1;  // not beside the next: arguments have no order
+  return 1 + std::ldexp(sign, -27 - choices.below(26));
+}
+
+/// Some entries.
 void disturb(Choices& choices, HlcpCase& problem) {
   for (int i = 0; i < problem.n; ++i) {
     for (int j = 0; j < problem.n; ++j) {
-      if (choices.flag()) problem.data.plus[i][j] *= 1 + std::ldexp(choices.flag() ? 1 : -1, -27 - choices.below(26));
+      if (choices.flag()) problem.data.plus[i][j] *= nearly_one(choices);
     }
-    if (choices.flag()) problem.data.b[i] *= 1 + std::ldexp(choices.flag() ? 1 : -1, -27 - choices.below(26));
+    if (choices.flag()) problem.data.b[i] *= nearly_one(choices);
   }
 }
 
