@@ -293,8 +293,9 @@ class LocatedStep {
       if (high_.s - low <= near) break;
       double s = estimate(low, at_low, high_.s, high_.value, third, at_third, have_third);
       if (k % 3 == 2) {
-        if (high_.s - low > 0.5 * width) s = low + 0.5 * (high_.s - low);
-        width = high_.s - low;
+        const bool slow = high_.s - low > 0.5 * width;
+        if (slow) s = low + 0.5 * (high_.s - low);
+        width = slow ? 0.5 * (high_.s - low) : high_.s - low;
       }
       if (!(s > low + 0.5 * near)) s = low + 0.5 * near;
       if (!(s < high_.s - 0.5 * near)) s = high_.s - 0.5 * near;
