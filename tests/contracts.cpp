@@ -151,6 +151,41 @@ TEST(Contracts, MassIsOffCentreOnlyWhereItHasAnArm) {
   EXPECT_TRUE(off_centre(Joint::fixed, 1.0));
 }
 
+TEST(Contracts, ADirectionMayPointAnywhere) {
+  Scene<Room> scene = two_bodies();
+  scene.guides = 1;
+  for (int k = 0; k < 64; ++k) {
+    const double angle = 3.14159265358979323846 * k / 32;
+    for (const double size : {1.0, 1e-9, 1e9}) {
+      scene.guide[0].tangent = {std::cos(angle), std::sin(angle)};
+      scene.guide[0].direction = {size * scene.guide[0].tangent.x, size * scene.guide[0].tangent.y};
+      EXPECT_EQ(defects(scene).count, 0) << angle;
+      scene.guide[0].direction = {-scene.guide[0].direction.x, -scene.guide[0].direction.y};
+      expect_one(scene, Item::guide, 0, Defect::tangent_not_unit);
+    }
+  }
+  scene.guide[0] = {};
+  EXPECT_EQ(defects(scene).count, 0) << "the default";
+}
+
+// ---- friction.hpp
+
+TEST(Contracts, ContactsAreIndependentWhereNoRoundingCouldMakeThemSo) {
+  // Rows (1, 0) and (1, d): S = [1, 1; 1, 1 + d d], exact. A pivot is off by 2 eps at most; 24 eps are far above that.
+  slideway::Hlcp<2> problem{};
+  const auto independent = [&](double pivot) {
+    for (auto* matrix : {&problem.plus, &problem.minus}) {
+      (*matrix)[0][0] = (*matrix)[0][1] = (*matrix)[1][0] = 1;
+      (*matrix)[1][1] = 1 + pivot;
+    }
+    return independent_contacts(problem, 2);
+  };
+  EXPECT_TRUE(independent(24 * 0x1p-52));
+  EXPECT_TRUE(independent(1));
+  EXPECT_FALSE(independent(0));
+  EXPECT_FALSE(independent(2 * 0x1p-52));
+}
+
 // ---- state.hpp
 
 TEST(Contracts, InputsAreZeroUnlessGiven) {

@@ -264,7 +264,7 @@ template <class Source, class Size = typename Source::Size>
     solve(without, static_cast<int>(table.rough), answer);
     if (answer.status == Status::ok) blamed = g;
   }
-  for (int g = source.scene.guides - 1; g >= 0 && blamed == none; --g) {
+  for (int g = 0; g < source.scene.guides && blamed == none; ++g) {
     if (table.is_rough[g]) blamed = g;
   }
   return blamed;

@@ -190,6 +190,7 @@ class RestProblem : public JammedGuides<Source> {
       if (!m.leaving[g]) coefficient_[g] = source_.scene.guide[g].mu_static;
       turned = true;
     }
+    if (turned) reopen(m);  // where they went beside those
     return turned;
   }
 
@@ -204,10 +205,15 @@ class RestProblem : public JammedGuides<Source> {
       grows = true;
     }
     if (!grows) return false;
-    for (int i = 0; i < count_; ++i) {  // all open again, set-valued
+    reopen(m);
+    return true;
+  }
+
+  /// The guides that took part without a mode are open again, set-valued.
+  void reopen(Modes<Size>& m) const noexcept {
+    for (int i = 0; i < count_; ++i) {
       if (!fixed_[set_[i]] && candidate_[set_[i]] == 0) m.mode[set_[i]] = 0;
     }
-    return true;
   }
 
   signed char candidate_[n_guides];  ///< modes that guides came with

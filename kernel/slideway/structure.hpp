@@ -100,7 +100,7 @@ constexpr double squared(Vec2 r) noexcept { return r.x * r.x + r.y * r.y; }
 /// Square root by Newton's method from above, for a length scale in constant expressions: 1e-3 is accuracy enough. From
 /// a power of two, so that another unit of length by a power of two gives the same bits.
 constexpr double rough_sqrt(double x) noexcept {
-  if (!(x > 1e-300) || !(x < 1e300)) return x > 0 ? x : 0;
+  if (!(x > 1e-300) || !(x < 1e300)) return x;
   double root = 1;
   for (int k = 0; k < 500 && root * root < x; ++k) root *= 2;
   for (int k = 0; k < 500 && root * root > 4 * x; ++k) root /= 2;

@@ -94,6 +94,15 @@ Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, co
       accelerations += lever * dv / h;
     }
   }
+  // Forces may cancel: their rounding does not.
+  for (std::size_t i = 0; i < model.body.size(); ++i) {
+    const auto& body = model.body[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const T& inertia = k == 2 ? body.inertia : body.mass;
+      const T load = method.dynamics().load(static_cast<int>(3 * i + k));
+      if (inertia > 0) accelerations += (k == 2 ? T(2 * most.reach) : T(1)) * load / inertia;
+    }
+  }
   const T place = items * most.reach, speed = items * most.speed;
   const T gained = h * (model.beta * place + model.alpha * speed + items * accelerations);
   return {{T(u * places), T(u * (speeds + gained))}, {T(u * (2 * places + place)), T(u * (2 * speeds + speed))}};

@@ -202,7 +202,8 @@ struct Rounding {
 /// reach for a turning coordinate and 1 for a sliding one:
 ///   q_j is rounded by u |q_j|, which moves points by l_j as much, v_j by u |v_j|;
 ///   places and velocities of points, from which Phi, Phi' and the accelerations come, are rounded 8 times a body (a
-///   rotation's six and a sum), and gains and h take their part of that into Phi'.
+///   rotation's six and a sum), and gains and h take their part of that into Phi';
+///   so are accelerations, and the forces that add up to them, those of the last stage.
 template <class T>
 Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to);
 

@@ -1,0 +1,68 @@
+// The stages of a Runge-Kutta step, and when they doubt that it is short enough.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <slideway/step.hpp>
+
+namespace {
+
+using slideway::Joint;
+using slideway::Scene;
+using slideway::Status;
+
+using Size = slideway::Size<2, 2, 0, 0, 0, 0, 0, 2, 0, 0>;
+using Source = slideway::RunTime<Size>;
+
+/// Two oscillators that know nothing of each other, q'' = -q each: 1 kg on a slide, and 1 kg m^2 that turns.
+Source oscillators() {
+  Scene<Size> scene;
+  scene.bodies = scene.joint_springs = 2;
+  scene.body[0].joint = Joint::prismatic;
+  scene.body[0].mass = 1;
+  scene.body[1].joint = Joint::revolute;
+  scene.body[1].inertia = 1;
+  for (int i = 0; i < 2; ++i) {
+    scene.joint_spring[i].body = i;
+    scene.joint_spring[i].stiffness = 1;
+  }
+  return Source(scene);
+}
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Of q = amplitude cos(t + phase) in one of the coordinates, and rest in the other: does a step of h doubt itself?
+template <const auto& tableau>
+bool is_too_long(double h, double amplitude, double phase, int coordinate) {
+  static const Source source = oscillators();
+  const slideway::Solving solving{};
+  const slideway::Inputs<Size> inputs{};
+  slideway::Report report;
+  const slideway::Setting<Source> setting{source, solving, inputs, 0, report};
+  slideway::Phase<Size> y{};
+  y.q[coordinate] = amplitude * std::cos(phase);
+  y.v[coordinate] = -amplitude * std::sin(phase);
+  slideway::Modes<Size> m{};
+  slideway::Reaction<Size> first{};
+  EXPECT_EQ(setting.evaluate(0, y, slideway::Aim::decide, true, m, first), Status::ok);
+  slideway::Stages<tableau, Source> stages;
+  EXPECT_EQ(stages.run(
+                setting, 0, h, y, first, slideway::Aim::follow, m, [](int) {}, [](int, const auto&) {}),
+            Status::ok);
+  return stages.is_too_long(source);
+}
+
+TEST(AStepOfAnOscillation, OfTwoRadiansIsTooLongAndOfAQuarterIsNotWhateverItsPhaseAndSize) {
+  for (const double amplitude : {1.0, 0x1p-40, 0x1p40})
+    for (const int coordinate : {0, 1})
+      for (int k = 0; k < 64; ++k) {
+        const double phase = 2 * pi * k / 64;
+        // rk4's doubts are 0.06 of the sum at most at a quarter of a radian, and half of it at least at two, in any
+        // phase. (dop853's weights are larger than their sum: it takes ten radians.)
+        EXPECT_FALSE(is_too_long<slideway::runge_kutta_4>(0.25, amplitude, phase, coordinate)) << phase;
+        EXPECT_TRUE(is_too_long<slideway::runge_kutta_4>(2, amplitude, phase, coordinate)) << phase;
+        EXPECT_FALSE(is_too_long<slideway::dormand_prince_8>(0.25, amplitude, phase, coordinate)) << phase;
+        EXPECT_TRUE(is_too_long<slideway::dormand_prince_8>(10, amplitude, phase, coordinate)) << phase;
+      }
+}
+
+}  // namespace
