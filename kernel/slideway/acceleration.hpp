@@ -322,7 +322,7 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   bool rests[at_least_one(Size::guides)];
   any_rests = find_rest(source, w, at, m, r, rests);
   if (all_slip && any_rests) return Status::ok;
-  signed char slips[at_least_one(Size::guides)];
+  signed char slips[at_least_one(Size::guides)] = {};
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD { slips[g] = rests[g] ? 0 : m.mode[g]; });
   apply_forces(source, w.kinematics, at.inputs, at.tau, w.dynamics);
   apply_steady_friction(source, slips, w.friction, w.dynamics);
@@ -333,7 +333,7 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
     return Status::singular_constraints;
   }
 
-  signed char signs[at_least_one(Size::contacts)];
+  signed char signs[at_least_one(Size::contacts)] = {};
   for_each<Source, Size::contacts>(table.rough,
                                    [&](int i) SLIDEWAY_FOLD { signs[i] = m.sign[table.rough_contact[i]]; });
   const bool any_rough = table.rough > 0;  // known to the compiler, for a scene that is

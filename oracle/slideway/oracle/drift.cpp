@@ -73,16 +73,33 @@ Extent<T> extent(const Model<T>& model, const Motion<T>& motion) {
   return {T(most.reach + arm), T(most.speed + most.turning * arm), most.turning};
 }
 
+/// What the forces on each body would give it one by one, all added up: they may cancel, their roundings do not. 0
+/// where the law has no or several answers.
+template <class T>
+T accelerations_one_by_one(Method<T>& method, const TreeState<T>& at) {
+  const Model<T>& model = method.dynamics().mechanism.model;
+  const std::optional<std::vector<T>> load = method.loads(at);
+  T sum(0);
+  if (!load) return sum;
+  const T lever = 2 * extent(model, method.dynamics().place(at.t, at.q, at.v)).reach;
+  for (std::size_t i = 0; i < model.body.size(); ++i) {
+    const auto& body = model.body[i];
+    if (body.mass > 0) sum += ((*load)[3 * i] + (*load)[3 * i + 1]) / body.mass;
+    if (body.inertia > 0) sum += lever * (*load)[3 * i + 2] / body.inertia;
+  }
+  return sum;
+}
+
 }  // namespace
 
 template <class T>
-Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to) {
+Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to, const T& loads) {
   using std::abs;
   const T u(0x1p-53);
   const Model<T>& model = method.dynamics().mechanism.model;
   const Extent<T> most = extent(model, method.dynamics().place(from.t, from.q, from.v));
   const T items(8 * (static_cast<int>(model.body.size()) + 1));
-  T places(0), speeds(0), accelerations(most.turning * most.turning * most.reach);
+  T places(0), speeds(0), accelerations(most.turning * most.turning * most.reach + loads);
   std::size_t j = 0;
   for (const auto& body : model.body) {
     const int count = coordinates(body.joint);
@@ -92,15 +109,6 @@ Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, co
       places += lever * q;
       speeds += lever * abs(from.v[j]) + q * (turns ? T(2 * most.speed) : most.turning);
       accelerations += lever * dv / h;
-    }
-  }
-  // Forces may cancel: their rounding does not.
-  for (std::size_t i = 0; i < model.body.size(); ++i) {
-    const auto& body = model.body[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const T& inertia = k == 2 ? body.inertia : body.mass;
-      const T load = method.dynamics().load(static_cast<int>(3 * i + k));
-      if (inertia > 0) accelerations += (k == 2 ? T(2 * most.reach) : T(1)) * load / inertia;
     }
   }
   const T place = items * most.reach, speed = items * most.speed;
@@ -125,7 +133,7 @@ template <class T>
 Drift<T> projected_drift(Method<T>& method, const std::vector<TreeState<T>>& states) {
   Drift<T> most{T(0), T(0)};
   for (const TreeState<T>& state : states) {
-    const Drift<T> limit = projection_limit(method, state), noise = rounding(method, state, T(1), state).noise;
+    const Drift<T> limit = projection_limit(method, state), noise = rounding(method, state, T(1), state, T(0)).noise;
     most = larger(most, {T(limit.position + noise.position), T(limit.velocity + noise.velocity)});
   }
   return most;
@@ -174,7 +182,7 @@ std::optional<Rounding<T>> largest_defect(Method<T>& method, Scheme scheme, cons
       defect[i] = {T(defect[i].position - carried.position), T(defect[i].velocity - carried.velocity)};
     }
     most = larger(most, largest(model, defect));
-    const Rounding<T> here = rounding(method, from, h, to);
+    const Rounding<T> here = rounding(method, from, h, to, accelerations_one_by_one(method, from));
     rounded = {larger(rounded.defect, here.defect), larger(rounded.noise, here.noise)};
   }
   rounded.defect.position += defect_margin * most.position;
@@ -201,7 +209,8 @@ std::optional<DriftBound<T>> drift_bound(Method<T>& method, Scheme scheme, const
   return result;
 }
 
-template Rounding<Real> rounding(Method<Real>&, const TreeState<Real>&, const Real&, const TreeState<Real>&);
+template Rounding<Real> rounding(Method<Real>&, const TreeState<Real>&, const Real&, const TreeState<Real>&,
+                                 const Real&);
 template Drift<Real> projected_drift(Method<Real>&, const std::vector<TreeState<Real>>&);
 template Drift<Real> projection_error(Method<Real>&, const std::vector<TreeState<Real>>&);
 template std::optional<Rounding<Real>> largest_defect(Method<Real>&, Scheme, const Real&,

@@ -203,9 +203,9 @@ struct Rounding {
 ///   q_j is rounded by u |q_j|, which moves points by l_j as much, v_j by u |v_j|;
 ///   places and velocities of points, from which Phi, Phi' and the accelerations come, are rounded 8 times a body (a
 ///   rotation's six and a sum), and gains and h take their part of that into Phi';
-///   so are accelerations, and the forces that add up to them, those of the last stage.
+///   so are accelerations, and `loads`, those that forces give one by one and that may cancel.
 template <class T>
-Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to);
+Rounding<T> rounding(Method<T>& method, const TreeState<T>& from, const T& h, const TreeState<T>& to, const T& loads);
 
 /// What the kernel's projection leaves at any of the states, with the noise of measuring it. It stops where every |Phi|
 /// is below 16 eps (bodies + 1) times the largest distance; rates are then solved for, with as many roundings of the

@@ -4,6 +4,7 @@
 // what it misses the constraints by is the method's own defect (drift.hpp).
 #pragma once
 
+#include <optional>
 #include <slideway/method.hpp>
 #include <slideway/oracle/dormand_prince.hpp>
 #include <slideway/oracle/friction.hpp>
@@ -83,6 +84,9 @@ class Method {
   /// q'' at a state, by the gains; `held`: guides at rest whatever their speed says, in; those that stay at rest, out.
   Verdict accelerate(const TreeState<T>& at, std::vector<bool>& held, std::vector<T>& acceleration);
 
+  /// At a state, Dynamics::load of every body's coordinates. Nothing where the law has no or several answers.
+  std::optional<std::vector<T>> loads(const TreeState<T>& at);
+
   /// Drift of every constraint at a state: drives, pins (two each, along the axes of body b), contacts.
   std::vector<Drift<T>> drift(const TreeState<T>& at);
 
@@ -151,6 +155,17 @@ Verdict Method<T>::accelerate(const TreeState<T>& at, std::vector<bool>& held, s
   const Verdict verdict = decide(at, at_rest, decision, acceleration);
   if (goes_on(verdict)) held = decision.solutions.front().at_rest;
   return verdict;
+}
+
+template <class T>
+std::optional<std::vector<T>> Method<T>::loads(const TreeState<T>& at) {
+  std::vector<bool> at_rest = law_.find_at_rest(dynamics_.place(at.t, at.q, at.v), T(rest_in_doubles));
+  for (std::size_t g = 0; g < at.rests.size(); ++g) at_rest[g] = at_rest[g] || at.rests[g];
+  Decision<T> decision;
+  std::vector<T> acceleration, sum;
+  if (!goes_on(decide(at, at_rest, decision, acceleration)) || !follow(at, decision, acceleration)) return std::nullopt;
+  for (int i = 0; i < 3 * dynamics_.mechanism.bodies(); ++i) sum.push_back(dynamics_.load(i));
+  return sum;
 }
 
 /// The accelerations in the mode of a decision, whether or not it is allowed here. Where forces are a choice, the first
