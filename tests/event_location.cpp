@@ -18,7 +18,7 @@ using slideway::Status;
 
 constexpr Method located[] = {Method::rk4_located, Method::dop853_located};
 
-using Size = slideway::Size<2, 4, 1, 1, 1, 0, 0, 0, 0, 0>;
+using Size = slideway::Size<2, 4, 2, 2, 2, 0, 0, 0, 0, 0>;
 using Stepper = slideway::RunTimeStepper<Size>;
 
 constexpr double limit = 5;  // m/s^2, mu g

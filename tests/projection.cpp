@@ -12,7 +12,7 @@ using slideway::Scene;
 // --- Basis -----------------------------------------------------------------------------------------------------------
 
 /// Four coordinates, each of its own body of 1 kg.
-using FourSize = slideway::Size<4, 4, 0, 0, 0, 0, 0, 0, 0, 0>;
+using FourSize = slideway::Size<4, 4, 0, 0, 2, 0, 0, 0, 0, 0>;
 using Four = slideway::RunTime<FourSize>;
 
 Four four_coordinates() {
@@ -97,7 +97,7 @@ TEST(Basis, TakesNoMoreThanItHasRoomFor) {
 
 /// A car of 1 kg on rails along x, and a block of 2 kg on it with a guide of its own along x; beside them a block of
 /// 3 kg on the ground. All may be off their lines.
-using CarSize = slideway::Size<3, 7, 2, 2, 0, 0, 0, 0, 0, 0>;
+using CarSize = slideway::Size<3, 7, 2, 2, 2, 0, 0, 0, 0, 0>;
 using Stepper = slideway::RunTimeStepper<CarSize>;
 
 Stepper car_and_blocks() {

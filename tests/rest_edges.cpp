@@ -1,5 +1,5 @@
 // A guide at rest at the edges of Coulomb's law: at its limit, beside large preloads, with whatever signs came before,
-// and where friction cannot change its motion. Scenes have exactly the room that they need.
+// and where friction cannot change its motion. Scenes have the room for guides that they need, and hardly more.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ using slideway::Scene;
 using slideway::Status;
 using slideway::Uniqueness;
 
-/// A block of 1 kg on two feet of one guide, and a load on it.
-using BlockSize = slideway::Size<1, 3, 1, 2, 1, 0, 0, 0, 1, 0>;
+/// Blocks of 1 kg on two feet of one guide, and a load on each.
+using BlockSize = slideway::Size<2, 6, 2, 4, 2, 0, 0, 0, 2, 0>;
 using Stepper = slideway::RunTimeStepper<BlockSize>;
 using State = Stepper::State;
 using Reaction = Stepper::Reaction;
@@ -232,7 +232,7 @@ TEST(AContactForceAboveItsRounding, HasASignOfItsOwn) {
 
 /// The elliptic trammel at rest of scenes/trammel_at_rest.toml, and before it a block that slides on a guide of its
 /// own.
-using TrammelSize = slideway::Size<2, 6, 3, 3, 0, 0, 0, 0, 1, 0>;
+using TrammelSize = slideway::Size<2, 6, 3, 3, 2, 0, 0, 0, 2, 0>;
 
 Scene<TrammelSize> trammel(double torque, double mu_level, double mu_upright, double force) {
   Scene<TrammelSize> scene;
@@ -261,20 +261,16 @@ Scene<TrammelSize> trammel(double torque, double mu_level, double mu_upright, do
 }
 
 TEST(ARefusal, NamesTheFirstGuideOfThoseItIsAbout) {
-  for (const Method method : {Method::euler, Method::rk4, Method::rk4_located, Method::dop853_located}) {
-    slideway::RunTimeStepper<TrammelSize> stepper(trammel(9, 0.5, 0.5, 6));
-    stepper.method = method;
-    auto state = stepper.start();
-    const Report report = stepper.step(state, dt);
-    EXPECT_EQ(report.status, Status::not_unique) << name(method);
-    EXPECT_EQ(report.guide, 1) << name(method);
-  }
+  const slideway::RunTimeStepper<TrammelSize> stepper(trammel(9, 0.5, 0.5, 6));
+  slideway::RunTimeStepper<TrammelSize>::Reaction r{};
+  const Report report = stepper.reaction(stepper.start(), {}, r);
+  EXPECT_EQ(report.status, Status::not_unique);
+  EXPECT_EQ(report.guide, 1);
 }
 
 TEST(ARefusal, NamesTheFirstGuideWhereNoSingleOneIsToBlame) {
   // Two overhung sliders (docs/theory.md) that know nothing of each other, each without a solution.
-  using TwoSize = slideway::Size<2, 6, 2, 4, 0, 0, 0, 0, 2, 0>;
-  Scene<TwoSize> scene;
+  Scene<BlockSize> scene;
   scene.gravity = {0, -10};
   scene.bodies = scene.guides = scene.loads = 2;
   for (int i = 0; i < 2; ++i) {
@@ -291,8 +287,8 @@ TEST(ARefusal, NamesTheFirstGuideWhereNoSingleOneIsToBlame) {
     scene.load[i].torque = 0.05;
   }
   const auto blamed = [&] {
-    const slideway::RunTimeStepper<TwoSize> stepper(scene);
-    slideway::RunTimeStepper<TwoSize>::Reaction r{};
+    const Stepper stepper(scene);
+    Reaction r{};
     const Report report = stepper.reaction(stepper.start(), {}, r);
     EXPECT_EQ(report.status, Status::no_solution);
     return report.guide;
