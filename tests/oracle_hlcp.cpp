@@ -222,6 +222,10 @@ void expect_truth(const Problem& problem, Census& census) {
   ASSERT_EQ(answer.w_property, all_of_one_sign(problem));
   ASSERT_EQ(has_w_property(exact), answer.w_property);
   expect_solutions(exact, answer);
+  const ExactAnswer counts = solve(exact, Want::counts);
+  ASSERT_EQ(counts.isolated.size(), answer.isolated.size());
+  ASSERT_EQ(counts.continuum.size(), answer.continuum.size());
+  ASSERT_EQ(counts.w_property, answer.w_property);
   census.enter(answer);
 }
 
@@ -502,6 +506,24 @@ TEST(OracleHlcp, ScalesRowsOfDoublesAsItScalesRowsOfRationals) {
   }
 }
 
+TEST(OracleHlcp, NumbersOfAnyLengthGiveTheSameSolutions) {
+  // Entries of 8 to 30 bits, about where minors stop fitting into 127; 3^60 leaves the solutions as they are.
+  std::mt19937_64 random(6);
+  const Integer factor = boost::multiprecision::pow(Integer(3), 60);
+  for (int round = 0; round < 3000; ++round) {
+    const int n = 1 + round % 3;
+    const int bits = 8 + static_cast<int>(random() % 23) + (n == 1 ? 30 : 0);
+    ExactHlcp given{n, {}}, longer{n, {}};
+    for (int k = 0; k < n * (2 * n + 1); ++k) {
+      given.rows.emplace_back(static_cast<std::int64_t>(random()) >> (64 - bits));
+      longer.rows.push_back(factor * given.rows.back());
+    }
+    const ExactAnswer first = solve(given), second = solve(longer);
+    ASSERT_EQ(points(first.isolated), points(second.isolated)) << n << " " << bits;
+    ASSERT_EQ(first.w_property, second.w_property);
+  }
+}
+
 TEST(OracleHlcp, TakesMultiprecisionAsItIs) {
   using Float = boost::multiprecision::cpp_bin_float_50;
   const Float b = 1 + boost::multiprecision::ldexp(Float(1), -100);
@@ -531,6 +553,8 @@ TEST(OracleHlcp, MeasuresWhatACandidateMisses) {
   EXPECT_EQ(residual(problem, {2, 0}), 0);
   EXPECT_EQ(residual(problem, {1, 0}), Rational(2, 6)) << "|2 - 4| of |2| + |4|";
   EXPECT_EQ(residual(problem, {-1, -1}), Rational(8, 8)) << "|-3 - 1 - 4|";
+  for (const std::vector<double>& x : {std::vector{2.0, 0.0}, {0.1, 0.1}, {-0.3, 0x1p-1074}, {0.1, -7e300}})
+    EXPECT_EQ(residual(problem, x.data()), nearest_double(residual(problem, exact_vector(x.data(), 2)))) << x[0];
   EXPECT_EQ(distance({3, -5}, {3, -4}), Rational(1, 4));
   EXPECT_EQ(distance({3, -5}, {0, 0}), 5);
 }

@@ -7,10 +7,11 @@
 //
 //   hlcp_problem.hpp   what is asked and answered      hlcp_unique.hpp   proofs that there is one solution
 //   hlcp_trial.hpp     one trial                       hlcp_decide.hpp   n <= 4 decided exactly
-//   hlcp_search.hpp    which signs to try next         here              the short ways for n = 1 and 2, and the
-//   interface
+//   hlcp_search.hpp    which signs to try next         hlcp_claims.hpp   what holds of each, for SLIDEWAY_CLAIM
+//   here               the short ways for n = 1 and 2, and the interface
 #pragma once
 
+#include <slideway/hlcp_claims.hpp>
 #include <slideway/hlcp_search.hpp>
 #include <type_traits>
 
@@ -172,6 +173,18 @@ template <int Capacity, class Count>
   solve_with_care(problem, static_cast<int>(n), solution, options, 1);
 }
 
+/// As solve(), below.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline void solve_by_order(const Hlcp<Capacity>& problem, Count n,
+                                                  HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
+  if (n < 0 || n > Capacity) return refuse(solution, Status::invalid_input, 0);
+  if (n == 0) return accept(solution, 0, solution.x, Uniqueness::certified, 0, 0.0);
+  if (n == 1) return solve_one(problem, solution, options);
+  if constexpr (Capacity >= 2)
+    if (n == 2) return solve_pair(problem, solution, options);
+  if constexpr (Capacity >= 3) solve_many(problem, n, solution, options);
+}
+
 }  // namespace hlcp_detail
 
 /// Solves A+ x+ - A- x- = b of order n (WWZ14 (18)), n a std::integral_constant<int, N> or an int.
@@ -188,12 +201,10 @@ template <int Capacity, class Count>
 template <int Capacity, class Count>
 inline void solve(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                   HlcpOptions options = {}) noexcept {
-  if (n < 0 || n > Capacity) return hlcp_detail::refuse(solution, Status::invalid_input, 0);
-  if (n == 0) return hlcp_detail::accept(solution, 0, solution.x, Uniqueness::certified, 0, 0.0);
-  if (n == 1) return hlcp_detail::solve_one(problem, solution, options);
-  if constexpr (Capacity >= 2)
-    if (n == 2) return hlcp_detail::solve_pair(problem, solution, options);
-  if constexpr (Capacity >= 3) hlcp_detail::solve_many(problem, n, solution, options);
+  hlcp_detail::solve_by_order(problem, n, solution, options);
+  SLIDEWAY_CLAIM(hlcp_detail::within_limit(solution.solves, n, options.max_solves));
+  SLIDEWAY_CLAIM(solution.status != Status::ok || hlcp_detail::is_answer(problem, n, solution));
+  SLIDEWAY_CLAIM(solution.uniqueness != Uniqueness::certified || hlcp_detail::has_one_sign(problem, n));
 }
 
 /// solve_hlcp's answer: x of the order of b, else as HlcpSolution.

@@ -11,7 +11,13 @@ namespace {
 
 namespace mp = boost::multiprecision;
 
-int sign(const Integer& value) { return value.sign(); }
+/// For small data: no heap, an instruction or two an operation.
+using Short = __int128;
+
+template <class Number>
+int sign(const Number& value) {
+  return (value > 0) - (value < 0);
+}
 
 /// Where the components of a solution or ray are positive and where negative, as bits.
 struct Signs {
@@ -23,15 +29,18 @@ struct Signs {
 /// Columns of [A+ | A-] are taken one after the other, at most one of each pair, and eliminated without fractions
 /// (Bareiss 1968): after m of them, entry (i, j) of level m is the minor of the m pivot rows and row i, and of the m
 /// columns taken and column j. So all numbers are integers, and each division is exact.
+template <class Number>
 class Walk {
  public:
   enum class Take { every, any };  ///< of each pair: exactly one column, or at most one
 
   Walk(const ExactHlcp& problem, Take take) : n_(problem.n), columns_(2 * n_ + 1), take_(take) {
-    for (int m = 0; m <= n_; ++m) level_[m].entry.resize(m == 0 ? 0 : problem.rows.size());
-    level_[0].entry = problem.rows;
+    entry_.resize((static_cast<std::size_t>(n_) + 1) * problem.rows.size());
+    std::transform(problem.rows.begin(), problem.rows.end(), entry_.begin(),
+                   [](const Integer& value) { return static_cast<Number>(value); });
   }
 
+  bool only_counts = false;      ///< vertices are left empty
   bool only_w_property = false;  ///< every: only determinants are wanted, and those only while they have one sign
   bool singular = false;         ///< every: some determinant is zero; the walk stops there
   bool w_property = true;
@@ -42,13 +51,12 @@ class Walk {
 
  private:
   struct Level {
-    std::vector<Integer> entry;  ///< rows m..n-1 are in use, and of columns those not yet decided
-    int parity = 1;              ///< of the row exchanges so far
-    int column = 0;              ///< taken here, by row m of this level
+    int parity = 1;  ///< of the row exchanges so far
+    int column = 0;  ///< taken here, by row m of this level
   };
 
-  Integer& at(int m, int i, int j) { return level_[m].entry[static_cast<std::size_t>(i * columns_ + j)]; }
-  const Integer& previous_pivot(int m) { return m == 0 ? one_ : at(m - 1, m - 1, level_[m - 1].column); }
+  Number& at(int m, int i, int j) { return entry_[static_cast<std::size_t>((m * n_ + i) * columns_ + j)]; }
+  const Number& previous_pivot(int m) { return m == 0 ? one_ : at(m - 1, m - 1, level_[m - 1].column); }
   int wanted(int column) const { return column < n_ ? 1 : -1; }
 
   /// Decides pair k and those after it; m_ columns are taken.
@@ -74,7 +82,7 @@ class Walk {
   /// Exchanges rows so that row m has the column's pivot; false if the column depends on those taken.
   bool bring_pivot(int column) {
     for (int i = m_; i < n_; ++i) {
-      if (at(m_, i, column).is_zero()) continue;
+      if (at(m_, i, column) == 0) continue;
       if (i != m_) {
         for (int j = 0; j < columns_; ++j) std::swap(at(m_, i, j), at(m_, m_, j));
         level_[m_].parity = -level_[m_].parity;
@@ -85,15 +93,15 @@ class Walk {
   }
 
   void eliminate(int k, int column) {
-    const Integer& pivot = at(m_, m_, column);
-    const Integer& divisor = previous_pivot(m_);
+    const Number& pivot = at(m_, m_, column);
+    const Number& divisor = previous_pivot(m_);
     level_[m_ + 1].parity = level_[m_].parity;
     for (int i = m_ + 1; i < n_; ++i) {
-      const Integer& factor = at(m_, i, column);
+      const Number& factor = at(m_, i, column);
       const auto update = [&](int j) {
-        Integer& result = at(m_ + 1, i, j);
+        Number& result = at(m_ + 1, i, j);
         result = pivot * at(m_, i, j);
-        if (!factor.is_zero()) result -= factor * at(m_, m_, j);
+        if (factor != 0) result -= factor * at(m_, m_, j);
         if (m_ > 0) result /= divisor;
       };
       for (int j = k + 1; j < n_; ++j) {
@@ -108,10 +116,10 @@ class Walk {
   /// pivot. Stops, and is false, at the first of which accept(index, sign) is false.
   template <class Accept>
   bool coefficients(int j, Accept accept) {
-    const Integer& minor = previous_pivot(m_);
+    const Number& minor = previous_pivot(m_);
     const int minor_sign = sign(minor);
     for (int i = m_ - 1; i >= 0; --i) {
-      Integer sum = minor * at(i, i, j);
+      Number sum = minor * at(i, i, j);
       for (int l = i + 1; l < m_; ++l) sum -= at(i, i, level_[l].column) * cramer_[l];
       cramer_[i] = sum / at(i, i, level_[i].column);
       if (!accept(i, sign(cramer_[i]) * minor_sign)) return false;
@@ -141,24 +149,28 @@ class Walk {
     if (take_ == Take::every) note_determinant();
     if (only_w_property) return;
     for (int i = m_; i < n_; ++i)
-      if (!at(m_, i, 2 * n_).is_zero()) return;
+      if (at(m_, i, 2 * n_) != 0) return;
     // One support for each vertex: no zeros; of patterns, zeros in columns of A+.
     const auto accept = [&](int i, int s) {
       const int column = level_[i].column;
       return s == wanted(column) || (s == 0 && take_ == Take::every && column < n_);
     };
     if (!coefficients(2 * n_, accept)) return;
-    Exact x(static_cast<std::size_t>(n_));
     Signs signs;
+    for (int i = 0; i < m_; ++i) mark(signs, level_[i].column);
+    vertex_signs.push_back(signs);
+    vertices.push_back(only_counts ? Exact() : vertex());
+  }
+
+  /// From the coefficients of b.
+  Exact vertex() {
+    Exact x(static_cast<std::size_t>(n_));
     const mp::cpp_int minor(previous_pivot(m_));
     for (int i = 0; i < m_; ++i) {
-      const int column = level_[i].column;
-      x[static_cast<std::size_t>(column % n_)] =
-          Rational(mp::cpp_int(minor < 0 ? -cramer_[i] : cramer_[i]), abs(minor));
-      mark(signs, column);
+      x[static_cast<std::size_t>(level_[i].column % n_)] =
+          Rational(mp::cpp_int(minor < 0 ? Number(-cramer_[i]) : cramer_[i]), abs(minor));
     }
-    vertices.push_back(std::move(x));
-    vertex_signs.push_back(signs);
+    return x;
   }
 
   void note_determinant() {
@@ -169,9 +181,10 @@ class Walk {
 
   const int n_, columns_;
   const Take take_;
-  const Integer one_ = 1;
+  const Number one_ = 1;
+  std::vector<Number> entry_;  ///< of level m, rows m..n-1 are in use, and of columns those not yet decided
   std::array<Level, exact_max_order + 1> level_;
-  std::array<Integer, exact_max_order> cramer_;
+  std::array<Number, exact_max_order> cramer_;
   int m_ = 0;
   int first_sign_ = 0;
 };
@@ -181,19 +194,37 @@ void require_order(const ExactHlcp& problem) {
     throw std::invalid_argument("exact solutions are found for orders up to " + std::to_string(exact_max_order));
 }
 
-}  // namespace
-
-Count ExactAnswer::count() const {
-  if (!continuum.empty()) return Count::continuum;
-  return isolated.empty() ? Count::none : isolated.size() == 1 ? Count::one : Count::several;
+int bits_of(unsigned value) {
+  int bits = 0;
+  for (; value != 0; value >>= 1) ++bits;
+  return bits;
 }
 
-ExactAnswer solve(const ExactHlcp& problem) {
-  require_order(problem);
-  Walk patterns(problem, Walk::Take::every);
+/// Whether no number of a Walk exceeds 127 bits. The minors are at most n! times the largest entry of each row, the
+/// largest sums are of n + 1 products of two of these.
+bool is_short(const ExactHlcp& problem) {
+  int minor = 0;
+  const auto columns = 2 * static_cast<std::size_t>(problem.n) + 1;
+  for (std::size_t i = 0; i < problem.rows.size(); i += columns) {
+    int most = 0;
+    for (std::size_t j = i; j < i + columns; ++j) {
+      const Integer& value = problem.rows[j];
+      if (!value.is_zero()) most = std::max(most, 1 + static_cast<int>(msb(value < 0 ? -value : value)));
+    }
+    minor += most;
+  }
+  for (int k = 2; k <= problem.n; ++k) minor += bits_of(static_cast<unsigned>(k - 1));
+  return 2 * minor + bits_of(static_cast<unsigned>(problem.n)) <= 127;
+}
+
+template <class Number>
+ExactAnswer solve_in(const ExactHlcp& problem, Want want) {
+  Walk<Number> patterns(problem, Walk<Number>::Take::every);
+  patterns.only_counts = want == Want::counts;
   patterns.run();
   if (!patterns.singular) return {patterns.w_property, std::move(patterns.vertices), {}};
-  Walk supports(problem, Walk::Take::any);
+  Walk<Number> supports(problem, Walk<Number>::Take::any);
+  supports.only_counts = want == Want::counts;
   supports.run();
   ExactAnswer answer;
   for (std::size_t v = 0; v < supports.vertices.size(); ++v) {
@@ -206,9 +237,21 @@ ExactAnswer solve(const ExactHlcp& problem) {
   return answer;
 }
 
+}  // namespace
+
+Count ExactAnswer::count() const {
+  if (!continuum.empty()) return Count::continuum;
+  return isolated.empty() ? Count::none : isolated.size() == 1 ? Count::one : Count::several;
+}
+
+ExactAnswer solve(const ExactHlcp& problem, Want want) {
+  require_order(problem);
+  return is_short(problem) ? solve_in<Short>(problem, want) : solve_in<Integer>(problem, want);
+}
+
 bool has_w_property(const ExactHlcp& problem) {
   require_order(problem);
-  Walk patterns(problem, Walk::Take::every);
+  Walk<Integer> patterns(problem, Walk<Integer>::Take::every);
   patterns.only_w_property = true;
   patterns.run();
   return patterns.w_property;

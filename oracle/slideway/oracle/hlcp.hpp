@@ -49,8 +49,11 @@ ExactHlcp exact_hlcp(int n, const Matrix& plus, const Matrix& minus, const Vecto
   using Given = std::decay_t<decltype(b[0])>;
   using Number = std::conditional_t<std::is_same_v<Given, double>, double, Rational>;
   ExactHlcp problem{n, {}};
+  problem.rows.reserve(static_cast<std::size_t>(n) * (2 * static_cast<std::size_t>(n) + 1));
+  std::vector<Number> row;
+  row.reserve(2 * static_cast<std::size_t>(n) + 1);
   for (int i = 0; i < n; ++i) {
-    std::vector<Number> row;
+    row.clear();
     for (int j = 0; j < n; ++j) row.push_back(Number(plus[i][j]));
     for (int j = 0; j < n; ++j) row.push_back(Number(minus[i][j]));
     row.push_back(Number(b[i]));
@@ -80,8 +83,13 @@ struct ExactAnswer {
   Count count() const;
 };
 
+enum class Want {
+  solutions,
+  counts  ///< of the solutions no more than how many: they are empty vectors. Their fractions cost more than all else
+};
+
 /// All solutions. invalid_argument if n > exact_max_order.
-ExactAnswer solve(const ExactHlcp& problem);
+ExactAnswer solve(const ExactHlcp& problem, Want want = Want::solutions);
 
 /// Whether all det W(s) have one strict sign; stops at the first that has not. Requires n <= exact_max_order.
 bool has_w_property(const ExactHlcp& problem);
@@ -89,6 +97,8 @@ bool has_w_property(const ExactHlcp& problem);
 /// max_i |A+ x+ - A- x- - b|_i / (|A+| x+ + |A-| x- + |b|)_i, a row of zeros counting 0: zero iff x is a solution. Of
 /// any order.
 Rational residual(const ExactHlcp& problem, const Exact& x);
+/// The same of doubles, rounded as by nearest_double(), and faster.
+double residual(const ExactHlcp& problem, const double* x);
 
 /// max |x - y| / max |y|; max |x| where y = 0.
 Rational distance(const Exact& x, const Exact& y);

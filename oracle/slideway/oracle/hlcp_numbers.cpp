@@ -28,6 +28,72 @@ Parts parts(double value) {
   return {mantissa, exponent};
 }
 
+/// x = top / bottom, bottom > 0: sums of these need no fractions in lowest terms.
+struct Common {
+  std::vector<Integer> top;
+  Integer bottom = 1;
+};
+
+Common over_common(const Exact& x) {
+  Common common;
+  for (const Rational& value : x) {
+    const Integer bottom(denominator(value));
+    if (!(common.bottom % bottom).is_zero()) common.bottom *= bottom / gcd(common.bottom, bottom);
+  }
+  for (const Rational& value : x)
+    common.top.push_back(Integer(numerator(value)) * (common.bottom / Integer(denominator(value))));
+  return common;
+}
+
+Common over_common(const double* x, int n) {
+  int least = 0;
+  for (int k = 0; k < n; ++k) least = std::min(least, parts(x[k]).exponent);
+  Common common;
+  common.top.reserve(static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    const Parts part = parts(x[k]);
+    common.top.emplace_back(part.mantissa) <<= part.exponent - least;
+  }
+  common.bottom <<= -least;
+  return common;
+}
+
+struct Quotient {
+  Integer top, bottom;
+};
+
+Quotient worst_of(const ExactHlcp& problem, const Common& x) {
+  Quotient worst{0, 1};
+  const int columns = 2 * problem.n + 1;
+  for (int i = 0; i < problem.n; ++i) {
+    const Integer* row = problem.rows.data() + i * columns;
+    const Integer b = row[2 * problem.n] * x.bottom;
+    Integer miss = -b;
+    Integer size = abs(b);
+    for (int j = 0; j < problem.n; ++j) {
+      const Integer& value = x.top.at(static_cast<std::size_t>(j));
+      if (value.is_zero()) continue;
+      const Integer term = row[value < 0 ? problem.n + j : j] * value;
+      miss += term;
+      size += abs(term);
+    }
+    miss = abs(miss);
+    if (miss * worst.bottom > worst.top * size) worst = {miss, size};
+  }
+  return worst;
+}
+
+/// top / bottom, both > 0. It is (q + rest / bottom) 2^-shift, q of 63 or 64 bits; that there is a rest is kept in the
+/// last of them.
+double nearest(Integer top, Integer bottom) {
+  Integer q, rest;
+  const int shift = 63 - (static_cast<int>(msb(top)) - static_cast<int>(msb(bottom)));
+  (shift > 0 ? top : bottom) <<= std::abs(shift);
+  divide_qr(top, bottom, q, rest);
+  const std::uint64_t bits = static_cast<std::uint64_t>(q) | (rest.is_zero() ? 0u : 1u);
+  return std::ldexp(static_cast<double>(bits), -shift);  // the conversion rounds, ties to even
+}
+
 }  // namespace
 
 void append_row(ExactHlcp& problem, const std::vector<double>& row) {
@@ -48,32 +114,24 @@ void append_row(ExactHlcp& problem, const Exact& row) {
 }
 
 Rational residual(const ExactHlcp& problem, const Exact& x) {
-  Rational worst = 0;
-  const int columns = 2 * problem.n + 1;
-  for (int i = 0; i < problem.n; ++i) {
-    const Integer* row = problem.rows.data() + i * columns;
-    const Rational b = cpp_int(row[2 * problem.n]);
-    Rational miss = -b;
-    Rational size = abs(b);
-    for (int j = 0; j < problem.n; ++j) {
-      const Rational& value = x.at(static_cast<std::size_t>(j));
-      if (value.is_zero()) continue;
-      const Rational term = Rational(cpp_int(row[value < 0 ? problem.n + j : j])) * value;
-      miss += term;
-      size += abs(term);
-    }
-    if (!size.is_zero()) worst = std::max<Rational>(worst, abs(miss) / size);
-  }
-  return worst;
+  const Quotient worst = worst_of(problem, over_common(x));
+  return Rational(cpp_int(worst.top), cpp_int(worst.bottom));
+}
+
+double residual(const ExactHlcp& problem, const double* x) {
+  const Quotient worst = worst_of(problem, over_common(x, problem.n));
+  return worst.top.is_zero() ? 0.0 : nearest(worst.top, worst.bottom);
 }
 
 Rational distance(const Exact& x, const Exact& y) {
-  Rational most = 0, size = 0;
+  const Common a = over_common(x), c = over_common(y);
+  Integer most = 0, size = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    most = std::max<Rational>(most, abs(x[k] - y.at(k)));
-    size = std::max<Rational>(size, abs(y[k]));
+    most = std::max<Integer>(most, abs(a.top[k] * c.bottom - c.top.at(k) * a.bottom));
+    size = std::max<Integer>(size, abs(c.top[k]));
   }
-  return size.is_zero() ? most : most / size;
+  if (most.is_zero()) return 0;
+  return Rational(cpp_int(most), cpp_int(a.bottom * (size.is_zero() ? c.bottom : size)));
 }
 
 Exact exact_vector(const double* x, int n) {
@@ -89,13 +147,7 @@ Exact exact_vector(const double* x, int n) {
 
 double nearest_double(const Rational& value) {
   if (value.is_zero()) return 0.0;
-  // |value| = (q + rest / bottom) 2^-shift, q of 63 or 64 bits; that there is a rest is kept in the last of them.
-  cpp_int top = abs(numerator(value)), bottom = denominator(value), q, rest;
-  const int shift = 63 - (static_cast<int>(msb(top)) - static_cast<int>(msb(bottom)));
-  (shift > 0 ? top : bottom) <<= std::abs(shift);
-  divide_qr(top, bottom, q, rest);
-  const std::uint64_t bits = static_cast<std::uint64_t>(q) | (rest.is_zero() ? 0u : 1u);
-  const double size = std::ldexp(static_cast<double>(bits), -shift);  // the conversion rounds, ties to even
+  const double size = nearest(Integer(abs(numerator(value))), Integer(denominator(value)));
   return value < 0 ? -size : size;
 }
 

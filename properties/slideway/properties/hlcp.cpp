@@ -28,10 +28,10 @@ std::string w_property(const oracle::ExactAnswer& exact) {
   return exact.w_property ? "the W-property holds" : "the W-property does not hold";
 }
 
-void measure(const HlcpCase& problem, const oracle::ExactHlcp& exact, HlcpCheck& check) {
+void measure(const HlcpCase& problem, const oracle::ExactHlcp& exact, oracle::Want want, HlcpCheck& check) {
+  check.residual = residual(exact, check.answer.x);
+  if (!check.exact || want == oracle::Want::counts) return;
   const oracle::Exact x = oracle::exact_vector(check.answer.x, problem.n);
-  check.residual = oracle::nearest_double(residual(exact, x));
-  if (!check.exact) return;
   for (std::size_t k = 0; k < check.exact->isolated.size(); ++k) {
     const double away = oracle::nearest_double(oracle::distance(x, check.exact->isolated[k]));
     if (check.nearest >= 0 && away >= check.distance) continue;
@@ -105,17 +105,17 @@ std::string describe(const oracle::ExactAnswer& answer) {
   return "a continuum of solutions";
 }
 
-HlcpCheck check_hlcp(const HlcpCase& problem, const HlcpAnswer& answer, double residual) {
+HlcpCheck check_hlcp(const HlcpCase& problem, const HlcpAnswer& answer, double residual, oracle::Want want) {
   HlcpCheck check;
   check.answer = answer;
   const oracle::ExactHlcp exact = oracle::exact_hlcp(problem.n, problem.data.plus, problem.data.minus, problem.data.b);
-  if (problem.n <= oracle::exact_max_order) check.exact = oracle::solve(exact);
+  if (problem.n <= oracle::exact_max_order) check.exact = oracle::solve(exact, want);
   if (!check.solved()) {
     judge_refusal(check);
   } else if (!all_finite(answer, problem.n)) {
     check.verdict = "disagree: the answer's x is not finite";
   } else {
-    measure(problem, exact, check);
+    measure(problem, exact, want, check);
     judge_solution(residual, check);
   }
   return check;
