@@ -83,6 +83,39 @@ TEST(Hlcp, HasNoSolutionToHandOutWhereItRefuses) {
   EXPECT_EQ(solve_hlcp(square, Bounded(3, 2), BoundedVector::Ones(3).eval()).status, Status::invalid_input);
 }
 
+TEST(Hlcp, ATieThatLeadsAwayFromTheSolutionCostsSolvesNotTheAnswer) {
+  // A solution with ties is found from the signs given, but not from the signs that do not depend on them, from which
+  // ties are tried again.
+  const double plus[5][5] = {
+      {-1, 1, 0, -1, -1}, {-1, 1, 0, 0, 1}, {0, -1, 0, 0, -1}, {-1, 0, 0, 0, 0}, {-1, -1, 1, 0, -1}};
+  const double minus[5][5] = {{1, 0, 0, -1, 0}, {0, 0, 0, 1, 0}, {-1, 0, 0, 1, 1}, {1, 1, 0, 0, -1}, {0, -1, -1, 1, 1}};
+  const signed char start[5] = {-1, 1, -1, -1, 1};
+  Hlcp<5> problem = {};
+  std::memcpy(problem.plus, plus, sizeof plus);
+  std::memcpy(problem.minus, minus, sizeof minus);
+  problem.b[4] = 2;
+  const auto answer = [&](int max_solves) {
+    HlcpSolution<5> solution = {};
+    std::memcpy(solution.sign, start, sizeof start);
+    HlcpOptions options;
+    options.max_solves = max_solves;
+    solve(problem, 5, solution, options);
+    return solution;
+  };
+  const HlcpSolution<5> found = answer(HlcpOptions{}.max_solves);
+  ASSERT_EQ(found.status, Status::ok) << name(found.status);
+  for (int i = 0; i < 5; ++i) {
+    double sum = -problem.b[i];
+    for (int j = 0; j < 5; ++j) sum += (found.x[j] < 0 ? minus[i][j] : plus[i][j]) * found.x[j];
+    EXPECT_NEAR(sum, 0, 1e-14) << i;
+  }
+  for (int limit = 1; limit < found.solves; ++limit) {
+    const HlcpSolution<5> refused = answer(limit);
+    EXPECT_NE(refused.status, Status::ok) << limit;
+    EXPECT_LE(refused.solves, limit);
+  }
+}
+
 // ---- guides at rest and their friction
 
 /// A rod whose end is on a line along the ground, leaning by `angle`: Painleve's, for much friction.
