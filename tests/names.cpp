@@ -10,13 +10,12 @@ namespace {
 
 using namespace slideway;
 
-/// The numbers of an enumeration until `unknown` is said of one. They are not known to the compiler, so that it is the
-/// program that finds the texts.
+/// The texts of an enumeration's numbers until `unknown` is said of one.
 template <class Enum, class Text>
 std::set<std::string> texts(Text&& text, const std::string& unknown) {
   std::set<std::string> found;
-  for (volatile int k = 0; k < 256; k = k + 1) {
-    const std::string t = text(static_cast<Enum>(static_cast<int>(k)));
+  for (int k = 0; k < 256; ++k) {
+    const std::string t = text(static_cast<Enum>(k));
     if (t == unknown) {
       EXPECT_EQ(found.size(), static_cast<std::size_t>(k)) << "two of them have one text";
       return found;
@@ -75,7 +74,7 @@ TEST(Tableau, IsTheSameFromTheCompilerAndFromTheProgram) {
 }
 
 TEST(Size, ArraysHaveRoomForOneAtLeast) {
-  for (volatile int n = -1; n < 3; n = n + 1) EXPECT_EQ(at_least_one(n), n == 2 ? 2 : 1);
+  for (int n = -1; n < 3; ++n) EXPECT_EQ(at_least_one(n), n == 2 ? 2 : 1);
 }
 
 }  // namespace

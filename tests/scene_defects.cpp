@@ -196,7 +196,7 @@ TEST(SceneDefects, TangentsAreDirectionsOfLengthOne) {
 }
 
 TEST(RoughSquareRoot, IsFromAboveAThousandthOff) {
-  for (volatile double x = 1e-299; x < 1e299; x = x * 7.3) {
+  for (double x = 1e-299; x < 1e299; x *= 7.3) {
     const double root = detail::rough_sqrt(x);
     EXPECT_GE(root, std::sqrt(x) * (1 - 1e-15)) << x;
     EXPECT_LE(root, std::sqrt(x) * 1.001) << x;
