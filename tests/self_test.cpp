@@ -34,6 +34,20 @@ using slideway::SelfTest;
 
 TEST(SelfTest, PassesAsBuilt) { EXPECT_EQ(slideway::self_test(), SelfTest::passed) << name(slideway::self_test()); }
 
+TEST(SelfTest, StepsTheSameSceneFromTheCompilerAndFromTheProgram) {
+  const slideway::Stepper<slideway::self_test_detail::block_on_belt> known;
+  auto scene = slideway::self_test_detail::make_block_on_belt();
+  const slideway::RunTimeStepper<decltype(scene)::Size> made(scene);
+  auto a = known.start();
+  auto b = made.start();
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_EQ(known.step(a, 0.0625).status, slideway::Status::ok);
+    ASSERT_EQ(made.step(b, 0.0625).status, slideway::Status::ok);
+  }
+  EXPECT_EQ(std::memcmp(a.q, b.q, sizeof a.q), 0);
+  EXPECT_EQ(std::memcmp(a.v, b.v, sizeof a.v), 0);
+}
+
 TEST(SelfTest, LeavesModesAndAnglesOnBothSidesOfAnEvent) {
   // What the golden hashes stand for: by every method the block slips, sticks and breaks away, and does not turn.
   for (const auto& known : slideway::self_test_detail::golden) {
