@@ -66,7 +66,7 @@ SLIDEWAY_INLINE double own_part(const Source& source, const Problem<Size>& hlcp,
   if (Size::contacts < 2 || source.scene.guide[g].contacts != 2) return norm * norm;
   const int o = c == source.tables.first_contact[g] ? i + 1 : i - 1;
   const double shared = 0.5 * (hlcp.plus[i][o] + hlcp.minus[i][o]), other = 0.5 * (hlcp.plus[o][o] + hlcp.minus[o][o]);
-  return larger(norm * norm - shared * shared / other, detail::epsilon * norm * norm);
+  return larger(norm * norm - detail::quotient(shared * shared, other), detail::epsilon * norm * norm);
 }
 
 /// What an evaluation is for.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <slideway/drive.hpp>
+#include <slideway/quotient.hpp>
 
 namespace slideway {
 
@@ -163,7 +164,7 @@ SLIDEWAY_INLINE bool factor_mass(const Source& source, const Kinematics<Size>& k
   for_each_down<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD {
     definite &= d.M[f][f] > rounding * d.diagonal[f];
     d.M[f][f] = std::sqrt(d.M[f][f]);
-    d.inverse[f] = 1 / d.M[f][f];
+    d.inverse[f] = detail::quotient(1, d.M[f][f]);
     for_each<Source, Size::coordinates>(table.ups[f], [&](int e) SLIDEWAY_FOLD {
       const int g = table.up[f][e];
       d.M[f][g] *= d.inverse[f];

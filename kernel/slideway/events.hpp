@@ -279,8 +279,8 @@ class LocatedStep {
       const double slope_1 = (b.of[i] - a.of[i]) / s, slope_2 = (c.of[i] - b.of[i]) / (left - s);
       const double bend = (slope_2 - slope_1) / left;
       const double size = larger(std::fabs(a.of[i]), std::fabs(c.of[i])) + noise_[i];
-      if (!(bend > 0) || b.of[i] / size >= least) return;
-      least = b.of[i] / size;
+      if (!(bend > 0) || detail::quotient(b.of[i], size) >= least) return;
+      least = detail::quotient(b.of[i], size);
       at = 0.5 * (s - slope_1 / bend);
     });
     return at;
@@ -358,8 +358,9 @@ class LocatedStep {
       if (!(b < 0)) return;
       double s = a > 0 ? low + (high - low) * (a / (a - b)) : low + (high - low) / 16;
       if (have_third && a > 0 && c != a && c != b) {
-        const double inverse = low * b * c / ((a - b) * (a - c)) + high * a * c / ((b - a) * (b - c)) +
-                               third * a * b / ((c - a) * (c - b));
+        using detail::quotient;
+        const double inverse = quotient(low * b * c, (a - b) * (a - c)) + quotient(high * a * c, (b - a) * (b - c)) +
+                               quotient(third * a * b, (c - a) * (c - b));
         if (inverse > low && inverse < high) s = inverse;
       }
       if (!any || s < least) least = s;

@@ -38,7 +38,7 @@ inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& sol
   const Word m = bits(problem.minus[0][0]);
   const double b = problem.b[0];
   const Word negative = Word{0} - ((p ^ bits(b)) >> 63);
-  const double x = b / real(p ^ ((p ^ m) & negative)) + 0.0;
+  const double x = detail::quotient(b, real(p ^ ((p ^ m) & negative))) + 0.0;
   // One sign, neither 0 nor infinite nor NaN; x normal, so that the quotient is correctly rounded, or exactly 0.
   const bool usual = ((p ^ m) >> 63) == 0 && is_within(p, 1, infinite - 1) && is_within(m, 1, infinite - 1) &&
                      (is_within(bits(x), bits(0x1p-1022), infinite - 1) || b == 0.0);

@@ -220,7 +220,7 @@ inline Vertex<Order> vertex_at(Small<Order>& p, const signed char* sigma) noexce
     const Minor<Order> numerator = minor_of(p, basis.rows, columns, m, sigma);
     columns[k] = column;
     if (sign_of(numerator, p).sign * basis.det.sign != sigma[column]) return vertex;
-    vertex.x[column] = determinant(numerator).value / det;
+    vertex.x[column] = detail::quotient(determinant(numerator).value, det);
   }
   vertex.exists = true;
   return vertex;

@@ -12,7 +12,7 @@ template <int Capacity, class Count>
 inline bool solve_with_signs(const Hlcp<Capacity>& problem, Count n, const signed char* signs, double* x) noexcept {
   using namespace hlcp_detail;
   if (n == 1) {
-    x[0] = problem.b[0] / (signs[0] == -1 ? problem.minus[0][0] : problem.plus[0][0]);
+    x[0] = detail::quotient(problem.b[0], signs[0] == -1 ? problem.minus[0][0] : problem.plus[0][0]);
     return std::isfinite(x[0]);
   }
   if constexpr (Capacity >= 2) {

@@ -212,7 +212,7 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
     const int p = static_cast<int>(row_bits - (best & row_bits));
     least = best < least ? best : least;
     if (p != k) exchange(trial, k, p, n);
-    const double inverse = 1.0 / trial.lu[k][k];
+    const double inverse = detail::quotient(1.0, trial.lu[k][k]);
     trial.inverse[k] = inverse;
     const Pair side = load(trial.side[k]);
     for (int i = k + 1; i < n; ++i) {
@@ -393,11 +393,11 @@ inline double either(bool first, double a, double b) noexcept {
 inline Pair solve_two(Pair row0, Pair row1, Pair size, Pair b) noexcept {
   const Pair pivot = {row0[0], row1[0]};
   const Pair schur = Pair{pivot[0], pivot[0]} * Pair{b[1], row1[1]} - Pair{pivot[1], pivot[1]} * Pair{b[0], row0[1]};
-  const double x1 = schur[0] / schur[1];
+  const double x1 = detail::quotient(schur[0], schur[1]);
   const Pair weight = magnitude(pivot) * Pair{size[1], size[0]};
   const bool first = bits(weight[0]) >= bits(weight[1]);
   const double rest = either(first, b[0], b[1]) - either(first, row0[1], row1[1]) * x1;
-  return Pair{rest / either(first, pivot[0], pivot[1]), x1};
+  return Pair{detail::quotient(rest, either(first, pivot[0], pivot[1])), x1};
 }
 
 /// x += W^-1 rest for n = 1 and n = 2.
@@ -412,7 +412,7 @@ inline void correct_small(const Hlcp<Capacity>& problem, int n, const double* re
       return;
     }
   }
-  trial.x[0] += rest[0] / trial.w[0][0];
+  trial.x[0] += detail::quotient(rest[0], trial.w[0][0]);
 }
 
 /// x += W^-1 rest, for n >= 3 by the factors at hand.

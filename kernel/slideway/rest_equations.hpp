@@ -30,7 +30,7 @@ struct Modes {
   double own[at_least_one(Size::contacts)];   ///< |N~|^2 less what its guide's other contact has of it, 1/kg
 
   /// Rounding of a contact force, N.
-  constexpr double noise(int c) const noexcept { return (rounding * norm[c] + state_rounding) / own[c]; }
+  constexpr double noise(int c) const noexcept { return detail::quotient(rounding * norm[c] + state_rounding, own[c]); }
   /// And of the v' of a guide whose first contact is c, m/s^2.
   constexpr double motion_noise(int c) const noexcept { return rounding * norm[c]; }
 };
