@@ -48,11 +48,7 @@ HlcpCase draw_any(Choices& choices, int most_order) {
   return problem;
 }
 
-/// Weak friction is divided by the order.
-bool is_readable(HlcpKind kind, int n) {
-  const bool by_order = kind == HlcpKind::friction || kind == HlcpKind::degenerate;
-  return kind != HlcpKind::scaled && kind != HlcpKind::nearly && !(by_order && n == 3);
-}
+bool is_readable(HlcpKind kind) { return kind != HlcpKind::scaled && kind != HlcpKind::nearly; }
 
 HlcpOptions draw_options(Choices& choices) {
   constexpr int most_solves[] = {4096, 1, 2, 7};
@@ -78,7 +74,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto drawn = static_cast<HlcpKind>(kind);
   const HlcpCase problem = draw_hlcp(choices, drawn, most_order);
-  fuzz::hold_hlcp(problem, start, options,
-                  is_readable(drawn, problem.n) ? fuzz::Numbers::readable : fuzz::Numbers::any);
+  fuzz::hold_hlcp(problem, start, options, is_readable(drawn) ? fuzz::Numbers::readable : fuzz::Numbers::any);
   return 0;
 }

@@ -56,6 +56,13 @@ void fill_friction(Choices& choices, HlcpCase& problem, double strength) {
   }
 }
 
+/// A strength that leaves the W-property: 2^-4 over the order, or the next power of two, so that entries keep few bits.
+double weak(int n) {
+  double strength = 0x1p-4;
+  for (int k = 1; k < n; k *= 2) strength /= 2;
+  return strength;
+}
+
 void fill_textbook(Choices& choices, HlcpCase& problem) {
   const int n = problem.n, which = choices.below(6);
   double m[hlcp_max_order * hlcp_max_order] = {}, q[hlcp_max_order] = {};
@@ -166,7 +173,7 @@ HlcpCase draw_hlcp(Choices& choices, HlcpKind kind, int most_order) {
       break;
     }
     case HlcpKind::friction:
-      fill_friction(choices, problem, 0x1p-4 / problem.n);
+      fill_friction(choices, problem, weak(problem.n));
       break;
     case HlcpKind::strong:
       fill_friction(choices, problem, 0.5);
@@ -178,7 +185,7 @@ HlcpCase draw_hlcp(Choices& choices, HlcpKind kind, int most_order) {
       break;
     case HlcpKind::degenerate:
       if (choices.flag()) {
-        fill_friction(choices, problem, 0x1p-4 / problem.n);
+        fill_friction(choices, problem, weak(problem.n));
       } else {
         fill(choices, problem, 2);
       }
