@@ -390,6 +390,32 @@ TEST(HlcpEdges, ARankThatRestsOnRoundingIsRefused) {
   expect_refused(problem, Status::singular_constraints);
 }
 
+TEST(HlcpEdges, ASolutionByMinorsHasTheSignsThatWereDecided) {
+  // Two solutions beside (0, -4.5, 0, 0), in other components of which minors round to the wrong side of zero; the
+  // last equation is then -9 x1 - 8 x3 = 0 or -32 x1 = 0, by these signs.
+  const Hlcp<4> problem = hlcp<4>(
+      {{{31.75, 6.0, 0.0, -8.999999999999993},
+        {9.75, -8.999999932944775, 14.499999891966581, 14.00000000000005},
+        {-13.250000000000188, 0.0, 0.0, -0.5},
+        {-9.0, 21.25, 0.0, 0.0}}},
+      {{{14.5, 14.5, -9.0, -9.0}, {-9.0, 7.0, -15.25, -12.75}, {9.5, -0.25, 0.0, 0.0}, {-32.0, 0.0, -8.0, 0.0}}},
+      {-65.25000000000003, -31.5, 1.125, 0.0});
+  for (unsigned code = 0; code < 16; ++code) {
+    const HlcpSolution<4> solution = answer(problem, code, {NotUnique::continue_along_signs});
+    ASSERT_EQ(solution.status, Status::ok) << name(solution.status);
+    for (int i = 0; i < 4; ++i) {
+      double miss = -problem.b[i];
+      double size = std::fabs(problem.b[i]);
+      for (int k = 0; k < 4; ++k) {
+        const double term = (solution.x[k] < 0.0 ? problem.minus : problem.plus)[i][k] * solution.x[k];
+        miss += term;
+        size += std::fabs(term);
+      }
+      EXPECT_LE(std::fabs(miss), 6 * 5 * 0x1p-53 * size) << "equation " << i << " from " << code;
+    }
+  }
+}
+
 // ---- what rounding hides above order four
 
 /// Neither `not_unique` nor ok and `refuted`, from any start.

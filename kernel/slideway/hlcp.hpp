@@ -11,6 +11,7 @@
 //   interface
 #pragma once
 
+#include <slideway/hlcp_claims.hpp>
 #include <slideway/hlcp_search.hpp>
 #include <type_traits>
 
@@ -172,6 +173,18 @@ template <int Capacity, class Count>
   solve_with_care(problem, static_cast<int>(n), solution, options, 1);
 }
 
+/// As solve(), below.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline void solve_by_order(const Hlcp<Capacity>& problem, Count n,
+                                                  HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
+  if (n < 0 || n > Capacity) return refuse(solution, Status::invalid_input, 0);
+  if (n == 0) return accept(solution, 0, solution.x, Uniqueness::certified, 0, 0.0);
+  if (n == 1) return solve_one(problem, solution, options);
+  if constexpr (Capacity >= 2)
+    if (n == 2) return solve_pair(problem, solution, options);
+  if constexpr (Capacity >= 3) solve_many(problem, n, solution, options);
+}
+
 }  // namespace hlcp_detail
 
 /// Solves A+ x+ - A- x- = b of order n (WWZ14 (18)), n a std::integral_constant<int, N> or an int.
@@ -188,12 +201,8 @@ template <int Capacity, class Count>
 template <int Capacity, class Count>
 inline void solve(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                   HlcpOptions options = {}) noexcept {
-  if (n < 0 || n > Capacity) return hlcp_detail::refuse(solution, Status::invalid_input, 0);
-  if (n == 0) return hlcp_detail::accept(solution, 0, solution.x, Uniqueness::certified, 0, 0.0);
-  if (n == 1) return hlcp_detail::solve_one(problem, solution, options);
-  if constexpr (Capacity >= 2)
-    if (n == 2) return hlcp_detail::solve_pair(problem, solution, options);
-  if constexpr (Capacity >= 3) hlcp_detail::solve_many(problem, n, solution, options);
+  hlcp_detail::solve_by_order(problem, n, solution, options);
+  SLIDEWAY_CLAIM(hlcp_detail::holds(problem, n, solution, options));
 }
 
 /// solve_hlcp's answer: x of the order of b, else as HlcpSolution.

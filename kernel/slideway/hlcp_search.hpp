@@ -162,6 +162,7 @@ inline Word code_of(const signed char* signs, int n) noexcept {
 }
 
 inline void signs_of(Word code, int n, signed char* signs) noexcept {
+  SLIDEWAY_CLAIM(n == 64 || code >> n == 0);
   for (int k = 0; k < n; ++k) signs[k] = static_cast<signed char>(((code >> k) & 1) != 0 ? -1 : 1);
 }
 
@@ -250,7 +251,8 @@ inline Status finish(Search<Capacity>& search, const Decided<Order>& decided) no
     if (trial.regular && enforce(search, decided.sigma)) return Status::ok;
   }
   if (decided.frail) return regular ? Status::inaccurate : Status::singular_constraints;
-  for (int k = 0; k < Order; ++k) trial.x[k] = decided.x[k];
+  for (int k = 0; k < Order; ++k)  // a sign is exact, the rounded minor beside it may have the other
+    trial.x[k] = decided.sigma[k] * decided.x[k] > 0.0 ? decided.x[k] : 0.0;
   check(search.scaled.problem, search.n, trial);
   return trial.accurate ? Status::ok : Status::inaccurate;
 }
@@ -344,6 +346,7 @@ inline void enumerate(Search<Capacity>& search, NotUnique policy, HlcpSolution<C
   const Word last = ~Word{0} >> (64 - search.n);  // no 2^n to count to: for n = 64 there is none
   bool complete = false;
   for (Word code = 0; !complete && census.proven < 2 && search.solves < search.max_solves; ++code) {
+    SLIDEWAY_CLAIM(code <= last);  // no pattern twice
     signs_of(code, search.n, signs);
     const bool accurate = try_signs(search, signs);
     enter(search, signs, accurate, census);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <slideway/hlcp_problem.hpp>
+#include <slideway/verify.hpp>
 #include <type_traits>
 #include <utility>
 
@@ -226,6 +227,30 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
   return real(least & ~row_bits);
 }
 
+/// For SLIDEWAY_CLAIM, O(n^3): whether L U = P W but for 3 n 2^-53 |L||U|, as all error bounds here take it (Higham
+/// 2002, theorem 9.3: n, and 2 more for multiplying by a rounded inverse), and what underflows; and whether weighted
+/// |l_ik| is at most 1, but for the 2^-46 that pivots of one size may differ by and roundings.
+template <int Capacity>
+inline bool reproduces(const Trial<Capacity>& trial, int n) noexcept {
+  bool good = true;
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < i; ++k)
+      good = good && std::fabs(trial.lu[i][k]) * trial.weight[i] <= (1.0 + 0x1p-44) * trial.weight[k];
+    for (int j = 0; j < n; ++j) {
+      double sum = -trial.w[trial.row[i]][j];
+      double size = 0.0;
+      for (int k = 0; k <= i && k <= j; ++k) {
+        const double term = (k == i ? 1.0 : trial.lu[i][k]) * trial.lu[k][j];
+        sum += term;
+        size += std::fabs(term);
+      }
+      // The sum itself has at most n + 1 roundings of terms below |L||U| + |W| <= 3 |L||U|.
+      good = good && std::fabs(sum) <= (3.0 * n + 3.0 * (n + 1)) * 0x1p-53 * size + 0x1p-1000;
+    }
+  }
+  return good;
+}
+
 /// x = U^-1 side, and in the other lane reach = max M(U)^-1 bound.
 template <int Capacity, class Count>
 inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
@@ -422,6 +447,7 @@ inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* s
   // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
   trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
   if (!trial.regular) return false;
+  SLIDEWAY_CLAIM(reproduces(trial, n));
   substitute(trial, n);
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
