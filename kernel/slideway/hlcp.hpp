@@ -7,8 +7,8 @@
 //
 //   hlcp_problem.hpp   what is asked and answered      hlcp_unique.hpp   proofs that there is one solution
 //   hlcp_trial.hpp     one trial                       hlcp_decide.hpp   n <= 4 decided exactly
-//   hlcp_search.hpp    which signs to try next         here              the short ways for n = 1 and 2, and the
-//   interface
+//   hlcp_search.hpp    which signs to try next         hlcp_claims.hpp   what holds of each, for SLIDEWAY_CLAIM
+//   here               the short ways for n = 1 and 2, and the interface
 #pragma once
 
 #include <slideway/hlcp_claims.hpp>
@@ -202,7 +202,9 @@ template <int Capacity, class Count>
 inline void solve(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                   HlcpOptions options = {}) noexcept {
   hlcp_detail::solve_by_order(problem, n, solution, options);
-  SLIDEWAY_CLAIM(hlcp_detail::holds(problem, n, solution, options));
+  SLIDEWAY_CLAIM(hlcp_detail::within_limit(solution.solves, n, options.max_solves));
+  SLIDEWAY_CLAIM(solution.status != Status::ok || hlcp_detail::is_answer(problem, n, solution));
+  SLIDEWAY_CLAIM(solution.uniqueness != Uniqueness::certified || hlcp_detail::has_one_sign(problem, n));
 }
 
 /// solve_hlcp's answer: x of the order of b, else as HlcpSolution.

@@ -62,20 +62,11 @@ inline bool has_one_sign(const Hlcp<Capacity>& problem, int n) noexcept {
   return true;
 }
 
-/// The most sign patterns that an answer may have cost. n <= 4: the one tried first or, for n = 2, those of the short
-/// way, n + 4 of sign iteration, 2^n determinants and 2^n trials of what they found. Else as many as allowed, and once
-/// more the one that enumeration has found.
-inline int most_solves(int n, int max_solves) noexcept {
-  return n <= decidable ? 1 + (n + 4) + (2 << n) : max_solves + 1;
-}
-
-template <int Capacity>
-inline bool holds(const Hlcp<Capacity>& problem, int n, const HlcpSolution<Capacity>& solution,
-                  HlcpOptions options) noexcept {
-  if (n < 0 || n > Capacity) return solution.status == Status::invalid_input;
-  if (solution.solves > most_solves(n, options.max_solves)) return false;
-  if (solution.status != Status::ok) return true;
-  return is_answer(problem, n, solution) && (solution.uniqueness != Uniqueness::certified || has_one_sign(problem, n));
+/// Whether no more sign patterns were examined than they may be. n <= 4: the one tried first or, for n = 2, those of
+/// the short way, n + 4 of sign iteration, 2^n determinants and 2^n trials of what they found. Else as many as allowed,
+/// and once more the one that enumeration has found.
+inline bool within_limit(int solves, int n, int max_solves) noexcept {
+  return solves <= (n <= 0 ? 0 : n <= decidable ? 1 + (n + 4) + (2 << n) : max_solves + 1);
 }
 
 }  // namespace slideway::hlcp_detail

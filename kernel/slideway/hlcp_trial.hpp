@@ -228,8 +228,9 @@ inline double eliminate(Trial<Capacity>& trial, Count n) noexcept {
 }
 
 /// For SLIDEWAY_CLAIM, O(n^3): whether L U = P W but for 3 n 2^-53 |L||U|, as all error bounds here take it (Higham
-/// 2002, theorem 9.3: n, and 2 more for multiplying by a rounded inverse), and what underflows; and whether weighted
-/// |l_ik| is at most 1, but for the 2^-46 that pivots of one size may differ by and roundings.
+/// 2002, theorem 9.3: n, and 2 more for multiplying by a rounded inverse), and for what underflows, 2^-1074 in L times
+/// entries below 2^200 2^n in U; and whether weighted |l_ik| is at most 1, but for the 2^-46 that pivots of one size
+/// may differ by, and roundings.
 template <int Capacity>
 inline bool reproduces(const Trial<Capacity>& trial, int n) noexcept {
   bool good = true;
@@ -245,7 +246,7 @@ inline bool reproduces(const Trial<Capacity>& trial, int n) noexcept {
         size += std::fabs(term);
       }
       // The sum itself has at most n + 1 roundings of terms below |L||U| + |W| <= 3 |L||U|.
-      good = good && std::fabs(sum) <= (3.0 * n + 3.0 * (n + 1)) * 0x1p-53 * size + 0x1p-1000;
+      good = good && std::fabs(sum) <= (3.0 * n + 3.0 * (n + 1)) * 0x1p-53 * size + 0x1p-800;
     }
   }
   return good;
