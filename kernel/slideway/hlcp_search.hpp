@@ -368,13 +368,14 @@ inline void enumerate(Search<Capacity>& search, NotUnique policy, HlcpSolution<C
           solution);
 }
 
-/// Signs to start from again after a tie: + for what may owe its sign to rounding, else those given.
+/// Signs to start from again: + for what is within `window` of zero, relative to the largest, else those given.
 template <int Capacity>
-inline void without_ties(const Search<Capacity>& search, const signed char* signs, signed char* start) noexcept {
+inline void without_ties(const Search<Capacity>& search, const signed char* signs, double window,
+                         signed char* start) noexcept {
   double largest = 0.0;
   for (int k = 0; k < search.n; ++k) largest = larger(largest, std::fabs(search.trial.x[k]));
   for (int k = 0; k < search.n; ++k)
-    start[k] = std::fabs(search.trial.x[k]) <= tie_window * largest ? static_cast<signed char>(1) : signs[k];
+    start[k] = std::fabs(search.trial.x[k]) <= window * largest ? static_cast<signed char>(1) : signs[k];
 }
 
 /// The order is above 4: iterations from the signs given; enumeration if they fail. Near a tie several patterns may be
@@ -395,13 +396,13 @@ inline void search_large(Search<Capacity>& search, signed char* signs, NotUnique
   const bool tie = found == Found::solution && !clear(search.trial.x, search.n, signs);
   signed char start[hlcp_max_order];
   if (tie && !proven) {
-    without_ties(search, signs, start);
+    without_ties(search, signs, tie_window, start);
     found = find(search, start);
     if (found == Found::nothing) found = find(search, signs);
     proven = found == Found::solution && contracts(problem, search.n, search.trial);
   }
   if (tie && proven) {
-    signs_of(0, search.n, start);
+    without_ties(search, signs, 1.0, start);
     found = find(search, start);
     proven = found == Found::solution;
     if (found == Found::nothing) found = find(search, signs);
