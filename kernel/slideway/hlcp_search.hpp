@@ -253,6 +253,7 @@ inline Status finish(Search<Capacity>& search, const Decided<Order>& decided) no
   if (decided.frail) return regular ? Status::inaccurate : Status::singular_constraints;
   for (int k = 0; k < Order; ++k)  // a sign is exact, the rounded minor beside it may have the other
     trial.x[k] = decided.sigma[k] * decided.x[k] > 0.0 ? decided.x[k] : 0.0;
+  if constexpr (Order % 2 != 0) trial.x[Order] = 0.0;  // the odd one out, which no solve has set
   check(search.scaled.problem, search.n, trial);
   return trial.accurate ? Status::ok : Status::inaccurate;
 }

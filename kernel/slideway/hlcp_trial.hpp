@@ -256,7 +256,7 @@ inline bool reproduces(const Trial<Capacity>& trial, int n) noexcept {
 template <int Capacity, class Count>
 inline void substitute(Trial<Capacity>& trial, Count n) noexcept {
   double reach = 0.0;
-  if (n % 2 != 0) trial.x[n] = 0.0;
+  trial.x[n - 1 + n % 2] = 0.0;  // the odd one out, which no solve sets; else the last, which is set below
   const auto back_step = [&](int solved) __attribute__((always_inline)) {
     const int j = n - 1 - solved;
     const double inverse = trial.inverse[j];
