@@ -10,7 +10,7 @@ using slideway::Joint;
 using slideway::Scene;
 using slideway::Status;
 
-using Size = slideway::Size<2, 2, 0, 0, 0, 0, 0, 2, 0, 0>;
+using Size = slideway::Size<2, 2, 2, 2, 2, 2, 0, 2, 0, 0>;
 using Source = slideway::RunTime<Size>;
 
 /// Two oscillators that know nothing of each other, q'' = -q each: 1 kg on a slide, and 1 kg m^2 that turns.

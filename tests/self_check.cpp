@@ -14,7 +14,7 @@ using slideway::Status;
 // --- wrong answers ---------------------------------------------------------------------------------------------------
 
 /// A block of 1 kg that slides at 1 m/s on two feet and leans on them: one guide with two contacts.
-using BlockSize = slideway::Size<1, 3, 1, 2, 0, 0, 0, 0, 0, 0>;
+using BlockSize = slideway::Size<2, 6, 2, 4, 2, 0, 0, 0, 0, 0>;
 using Block = slideway::RunTime<BlockSize>;
 
 Block leaning_block() {
@@ -98,7 +98,7 @@ TEST(SelfCheck, RefusesAccelerationsThatTheForcesDoNotGive) {
 
 /// A body of 1 kg, off its centre, on a pin to a car that slides along x or y and weighs next to nothing; the car is
 /// pushed.
-using CarSize = slideway::Size<2, 4, 0, 0, 0, 1, 0, 0, 1, 0>;
+using CarSize = slideway::Size<2, 4, 2, 2, 2, 2, 0, 0, 2, 0>;
 
 Scene<CarSize> body_on_light_car(double mass, bool upright) {
   Scene<CarSize> scene;
