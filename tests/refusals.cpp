@@ -6,18 +6,18 @@
 #include <cstring>
 #include <limits>
 #include <slideway/hlcp.hpp>
-#include <slideway/step.hpp>
+#include <slideway/io/stepper.hpp>
 
 namespace {
 
 using namespace slideway;
 
-/// One planar body on a line along the ground; room for two, since g++ warns at -O1 of what one body has no parent for.
-using Small = Size<2, 3, 1, 2, 0, 1, 0, 0, 1, 1>;
-using Stepping = RunTimeStepper<Small>;
+using Room = io::RunSize;  // the stepper that is compiled already
+using Stepping = RunTimeStepper<Room>;
 
-Scene<Small> block() {
-  Scene<Small> scene;
+/// A block whose two feet slide on a line along the ground.
+Scene<Room> block() {
+  Scene<Room> scene;
   scene.gravity = {0, -9.81};
   scene.bodies = scene.guides = 1;
   scene.body[0].joint = Joint::planar;
@@ -52,7 +52,7 @@ TEST(Refusals, OfOptionsOutOfRangeLeaveTheState) {
 }
 
 TEST(Refusals, OfProjectionLeaveTheState) {
-  const auto expect_refused = [](const Scene<Small>& scene, double x, Status status) {
+  const auto expect_refused = [](const Scene<Room>& scene, double x, Status status) {
     const Stepping stepper(scene);
     Stepping::State state = stepper.start();
     state.q[0] = x;
@@ -60,7 +60,7 @@ TEST(Refusals, OfProjectionLeaveTheState) {
     EXPECT_EQ(stepper.project(state).status, status);
     EXPECT_TRUE(same_bytes(state, before));
   };
-  Scene<Small> scene = block();
+  Scene<Room> scene = block();
   scene.body[0].mass = 0;
   expect_refused(scene, 0, Status::singular_constraints);  // moves nothing, so no change of it is the least
   scene = block();
@@ -119,8 +119,8 @@ TEST(Hlcp, ATieThatLeadsAwayFromTheSolutionCostsSolvesNotTheAnswer) {
 // ---- guides at rest and their friction
 
 /// A rod whose end is on a line along the ground, leaning by `angle`: Painleve's, for much friction.
-Scene<Small> rod(double mu, double angle) {
-  Scene<Small> scene = block();
+Scene<Room> rod(double mu, double angle) {
+  Scene<Room> scene = block();
   scene.body[0].com = {1, 0};
   scene.body[0].inertia = 1.0 / 3;
   scene.body[0].q[2] = angle;
@@ -157,7 +157,7 @@ TEST(Rest, ASlideThatWasProposedAndHasNoSolutionIsWithdrawn) {
 
 /// Events of a block that slides while a force grows that lifts it: from 9 N by 2 N in the step.
 Report lifted(double mu, double preload) {
-  Scene<Small> scene = block();
+  Scene<Room> scene = block();
   scene.body[0].v[0] = 5;
   scene.guide[0].mu = scene.guide[0].mu_static = mu;
   scene.guide[0].preload = preload;
@@ -167,7 +167,7 @@ Report lifted(double mu, double preload) {
   Stepping stepper(scene);
   stepper.method = Method::rk4_located;
   Stepping::State state = stepper.start();
-  Inputs<Small> inputs;
+  Inputs<Room> inputs;
   inputs.input[0] = {9, 20, 0};
   EXPECT_EQ(stepper.step(state, 1e-6, inputs).status, Status::ok);
   const Report report = stepper.step(state, 0.1, inputs);

@@ -34,18 +34,42 @@ using slideway::SelfTest;
 
 TEST(SelfTest, PassesAsBuilt) { EXPECT_EQ(slideway::self_test(), SelfTest::passed) << name(slideway::self_test()); }
 
-TEST(SelfTest, StepsTheSameSceneFromTheCompilerAndFromTheProgram) {
-  const slideway::Stepper<slideway::self_test_detail::block_on_belt> known;
-  auto scene = slideway::self_test_detail::make_block_on_belt();
-  const slideway::RunTimeStepper<decltype(scene)::Size> made(scene);
-  auto a = known.start();
-  auto b = made.start();
-  for (int k = 0; k < 10; ++k) {
-    ASSERT_EQ(known.step(a, 0.0625).status, slideway::Status::ok);
-    ASSERT_EQ(made.step(b, 0.0625).status, slideway::Status::ok);
-  }
-  EXPECT_EQ(std::memcmp(a.q, b.q, sizeof a.q), 0);
-  EXPECT_EQ(std::memcmp(a.v, b.v, sizeof a.v), 0);
+TEST(SelfTest, ItsSceneIsTheSameFromTheCompilerAndFromTheProgram) {
+  const auto numbers = [](const auto& scene) {
+    const auto &belt = scene.body[0], &block = scene.body[1];
+    const auto& feet = scene.guide[0];
+    const auto& spring = scene.spring[0];
+    return std::vector<double>{scene.gravity.x,
+                               scene.gravity.y,
+                               belt.mass,
+                               belt.v[0],
+                               block.mass,
+                               block.com.x,
+                               block.com.y,
+                               block.inertia,
+                               block.q[0],
+                               block.v[0],
+                               feet.contact[0].x,
+                               feet.contact[1].x,
+                               feet.mu,
+                               feet.mu_static,
+                               feet.viscous,
+                               scene.drive[0].c[1],
+                               spring.b_at.x,
+                               spring.stiffness,
+                               spring.length,
+                               spring.damping,
+                               double(scene.bodies),
+                               double(scene.guides),
+                               double(scene.drives),
+                               double(scene.springs),
+                               double(feet.slider),
+                               double(feet.rail),
+                               double(feet.contacts),
+                               double(spring.a)};
+  };
+  auto made = slideway::self_test_detail::make_block_on_belt();
+  EXPECT_EQ(numbers(made), numbers(slideway::self_test_detail::block_on_belt));
 }
 
 TEST(SelfTest, LeavesModesAndAnglesOnBothSidesOfAnEvent) {
