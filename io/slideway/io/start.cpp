@@ -54,7 +54,7 @@ struct MissReport {
       defects.push_back({file.file, file.line(item, index),
                          fmt::format("{}: the start misses {} by {:.3g} m: correct q, or let --project-start do it",
                                      title, what, miss)});
-    } else if (!(rate <= start_tolerance * speed)) {
+    } else if (!(rate <= start_tolerance * speed + detail::epsilon * length)) {  // in a second, rounding of the length
       defects.push_back({file.file, file.line(item, index),
                          fmt::format("{}: the start speeds leave {} at {:.3g} m/s: correct v, or let --project-start "
                                      "do it",
