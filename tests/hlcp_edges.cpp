@@ -416,8 +416,6 @@ TEST(HlcpEdges, ASolutionByMinorsHasTheSignsThatWereDecided) {
   }
 }
 
-<<<<<<< HEAD
-=======
 /// Leaves what is no number where the solver's arrays will be.
 [[gnu::noinline]] void litter_stack() {
   volatile double litter[2048];
@@ -436,7 +434,6 @@ TEST(HlcpEdges, ASolutionByMinorsReadsNothingThatWasNotSet) {
   }
 }
 
->>>>>>> hlcp
 // ---- what rounding hides above order four
 
 /// Neither `not_unique` nor ok and `refuted`, from any start.
