@@ -167,7 +167,7 @@ class LocatedStep {
   /// and runs into its limit.
   Status advance_resolved(double done, double& s, const Phase<Size>& y, const Modes<Size>& m) noexcept {
     Status status = advance(done, s, y, m);
-    for (int k = 0; k < most_pieces && (status != Status::ok || (vary() && stages_.is_too_long(source_))); ++k) {
+    for (int k = 0; k < most_pieces && (status != Status::ok || (vary() && stages_.is_too_long(source_, s))); ++k) {
       if (!(0.5 * s > resolution(done, s))) return status;
       s *= 0.5;
       status = advance(done, s, y, m);
@@ -296,6 +296,7 @@ class LocatedStep {
       if (at_low.of[i] < 0) at_low.of[i] = 0;
     });
     bool have_third = false;
+    int lows = 0, highs = 0;  // probes in a row that have moved that end
     for (int k = 0; k < probes_to_locate; ++k) {
       SLIDEWAY_CLAIM(0 <= low && low < high_.s && is_negative(high_.value));
       const double near = resolution(done, high_.s);
@@ -305,6 +306,9 @@ class LocatedStep {
         width = high_.s - low;
       }
       double s = estimate(low, at_low, high_.s, high_.value, third, at_third, have_third);
+      // Estimates that stay on one side of the zero leave the other end where it is: twice as far is beyond it.
+      if (lows > 1) s = low + 2 * (s - low);
+      if (highs > 1) s = high_.s - 2 * (high_.s - s);
       if (k % 3 == 2 && high_.s - low > 0.5 * width) s = low + 0.5 * (high_.s - low);
       if (!(s > low + 0.5 * near)) s = low + 0.5 * near;
       if (!(s < high_.s - 0.5 * near)) s = high_.s - 0.5 * near;
@@ -317,11 +321,15 @@ class LocatedStep {
         third = high_.s;
         at_third = high_.value;
         high_ = now;
+        ++highs;
+        lows = 0;
       } else {
         third = low;
         at_third = at_low;
         low = s;
         at_low = now.value;
+        ++lows;
+        highs = 0;
       }
     }
     return has_pole(done, left, at_low) ? Status::singular_constraints : Status::ok;
@@ -356,7 +364,8 @@ class LocatedStep {
     each_watched([&](int i) {
       const double a = at_low.of[i], b = at_high.of[i], c = at_third.of[i];
       if (!(b < 0)) return;
-      double s = a > 0 ? low + (high - low) * (a / (a - b)) : low + (high - low) / 16;
+      // Zero where a probe was: it ends there. Zero where the round begins: it goes on first.
+      double s = a > 0 ? low + (high - low) * (a / (a - b)) : low > 0 ? low : low + (high - low) / 16;
       if (have_third && a > 0 && c != a && c != b) {
         using detail::quotient;
         const double inverse = quotient(low * b * c, (a - b) * (a - c)) + quotient(high * a * c, (b - a) * (b - c)) +
