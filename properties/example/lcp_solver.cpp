@@ -22,7 +22,7 @@ bool broken_solver(int n, const double* M, const double* q, double* z) {
     for (int i = 0; i < n; ++i) {
       double w = q[i];
       for (int j = 0; j < n; ++j) w += M[i * n + j] * z[j];
-      z[i] = std::fmax(0, z[i] - w / M[i * n + i]);
+      if (M[i * n + i] != 0) z[i] = std::fmax(0, z[i] - w / M[i * n + i]);
     }
   }
   return true;
