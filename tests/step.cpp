@@ -511,6 +511,26 @@ TEST(StepReplays, WhateverSignsAndModesItIsGivenAsGuesses) {
 
 // --- events ----------------------------------------------------------------------------------------------------------
 
+TEST(StepEnergy, OfEulerIsItsPowerAtTheStart) {
+  Scene scene;  // 2 kg at 3 m/s, pushed by 5 N against a damper of 1 N s/m: all numbers are exact
+  scene.bodies = scene.loads = scene.joint_springs = 1;
+  scene.body[0].mass = 2;
+  scene.body[0].joint = slideway::Joint::prismatic;
+  scene.body[0].v[0] = 3;
+  scene.load[0].body = scene.joint_spring[0].body = 0;
+  scene.load[0].force = {5, 0};
+  scene.joint_spring[0].damping = 1;
+  Stepper stepper(scene);
+  stepper.method = Method::euler;
+  State state = stepper.start();
+  const Report report = stepper.step(state, 0.25);
+  ASSERT_EQ(report.status, Status::ok);
+  EXPECT_EQ(report.energy.work, 0.25 * 5 * 3);
+  EXPECT_EQ(report.energy.dissipated, 0.25 * 3 * 3);
+  EXPECT_EQ(report.energy.constraint_work, 0);
+  EXPECT_EQ(state.v[0], 3 + 0.25 * (5 - 3) / 2);
+}
+
 TEST(StepCounts, ReversalsThatItGoesOver) {
   struct Row {
     const char* scene;
