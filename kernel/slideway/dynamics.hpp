@@ -6,7 +6,6 @@
 #pragma once
 
 #include <slideway/drive.hpp>
-#include <slideway/quotient.hpp>
 
 namespace slideway {
 

@@ -1,7 +1,7 @@
 // What is asked of slideway::solve for A+ x+ - A- x- = b, and what it answers.
 #pragma once
 
-#include <slideway/quotient.hpp>
+#include <slideway/arithmetic.hpp>
 #include <slideway/status.hpp>
 
 namespace slideway {

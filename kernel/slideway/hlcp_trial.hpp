@@ -28,8 +28,6 @@ inline double real(Word word) noexcept {
   return value;
 }
 
-inline double larger(double a, double b) noexcept { return a > b ? a : b; }
-
 inline constexpr Word sign_bit = Word{1} << 63;
 
 /// 2^k for -1022 <= k <= 1023.

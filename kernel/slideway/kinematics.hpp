@@ -4,6 +4,7 @@
 // prescribe. The free q'' are what acceleration.hpp solves for.
 #pragma once
 
+#include <slideway/arithmetic.hpp>
 #include <slideway/state.hpp>
 #include <slideway/structure.hpp>
 
@@ -18,9 +19,6 @@ SLIDEWAY_INLINE constexpr double dot(Vec2 a, Vec2 b) noexcept { return a.x * b.x
 SLIDEWAY_INLINE constexpr double cross(Vec2 a, Vec2 b) noexcept { return a.x * b.y - a.y * b.x; }
 /// r turned by +90 degrees.
 SLIDEWAY_INLINE constexpr Vec2 perp(Vec2 r) noexcept { return {-r.y, r.x}; }
-
-/// The larger of two magnitudes; b when a is NaN.
-SLIDEWAY_INLINE constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 
 struct Rotation {
   double c, s;

@@ -54,8 +54,8 @@ class Stages {
 
   /// Do the doubts exceed a quarter of sum |b_k a_k|, over all coordinates, an angle counting as the scene's length
   /// times it? For q'' = -w^2 q they are 0.06 of it at most at h w = 1/4 and half of it at least at h w = 2 (rk4;
-  /// dop853 from h w = 10), in any phase: there a step is long beside the motion's own times. Not
-  /// where they move nothing by 2^-40 of that length: at rest accelerations are rounding.
+  /// dop853 from h w = 10), in any phase: there a step is long beside the motion's own times. Not where
+  /// they move nothing by 2^-40 of that length: at rest accelerations are rounding.
   bool is_too_long(const Source& source, double h) const noexcept {
     double apart = 0, size = 0;
     for (int j = 0; j < source.tables.coordinates; ++j) {
