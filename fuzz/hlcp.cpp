@@ -1,5 +1,7 @@
 // HLCPs of every kind and of any doubles: the kernel's answers against all exact ones.
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "support/fail.hpp"
@@ -50,6 +52,14 @@ HlcpCase draw_any(Choices& choices, int most_order) {
 
 bool is_readable(HlcpKind kind) { return kind != HlcpKind::scaled && kind != HlcpKind::nearly; }
 
+/// The largest order drawn, by SLIDEWAY_FUZZ_ORDER or of `usual`.
+int draw_most_order(Choices& choices) {
+  constexpr int usual[] = {3, 3, 3, 3, 3, 3, 4, 5};  // the exact solutions of order 5 take a hundred times as long
+  static const char* const asked = std::getenv("SLIDEWAY_FUZZ_ORDER");
+  const int drawn = usual[choices.below(8)];
+  return asked ? std::clamp(std::atoi(asked), 1, 5) : drawn;
+}
+
 HlcpOptions draw_options(Choices& choices) {
   constexpr int most_solves[] = {4096, 1, 2, 7};
   HlcpOptions options;
@@ -63,9 +73,7 @@ HlcpOptions draw_options(Choices& choices) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Choices choices({data, size});
   const int kind = choices.below(hlcp_kinds + 1);
-  constexpr int most_orders[] = {3, 3, 3, 3,
-                                 3, 3, 4, 5};  // the exact solutions of order 5 take a hundred times as long
-  const int most_order = most_orders[choices.below(8)];
+  const int most_order = draw_most_order(choices);
   const unsigned start = choices.byte();
   const HlcpOptions options = draw_options(choices);
   if (kind == hlcp_kinds) {

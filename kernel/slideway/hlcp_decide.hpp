@@ -15,7 +15,7 @@ inline constexpr int decidable = 4;  ///< the largest order that is decided exac
 template <int Order>
 struct ExactSum {
   static constexpr int terms = Order == 4 ? 24 : Order == 3 ? 6 : Order;
-  double part[terms << (Order - 1)] = {};
+  double part[terms << (Order - 1)];
   int size = 0;
 
   void add(double term) noexcept {
@@ -66,7 +66,7 @@ struct Determinant {
 /// |value - det| <= 2^-49 size: level i adds at most i roundings, 1 + 2 + 3 + 4 in all, and 2^-49 = 16 units.
 template <int Order>
 inline Determinant determinant(const Minor<Order>& minor) noexcept {
-  Determinant of[1 << Order] = {};
+  Determinant of[1 << Order];  // the first 2^m
   of[0] = {1.0, 1.0};
   for (int set = 1; set < (1 << minor.m); ++set) {
     int row = -1;
@@ -144,7 +144,8 @@ inline double entry(const Small<Order>& p, int row, int k, const signed char* si
 template <int Order>
 inline Minor<Order> minor_of(const Small<Order>& p, int rows, const int* columns, int m,
                              const signed char* signs) noexcept {
-  Minor<Order> minor = {{}, m};
+  Minor<Order> minor;
+  minor.m = m;
   int i = 0;
   for (int row = 0; row < p.n; ++row) {
     if (((rows >> row) & 1) == 0) continue;

@@ -107,7 +107,7 @@ struct Search {
 template <int Capacity>
 inline bool try_signs(Search<Capacity>& search, const signed char* signs) noexcept {
   ++search.solves;
-  return attempt_any(search.scaled.problem, search.n, signs, search.trial);
+  return attempt(search.scaled.problem, search.n, signs, search.trial);
 }
 
 /// Sets to zero the components of x that are not of the sign sigma in {-1, 0, 1}; whether the residual allows it. If

@@ -437,22 +437,6 @@ inline void refine(const Hlcp<Capacity>& problem, int n, Trial<Capacity>& trial)
   check(problem, n, trial);
 }
 
-/// Solves with W(signs), n >= 3. Returns whether data in range gave a regular matrix and an accurate x.
-template <int Capacity, class Count>
-inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
-  trial.regular = trial.accurate = false;
-  if (!select(problem, n, signs, trial)) return false;
-  const double least = eliminate(trial, n);
-  // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
-  trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
-  if (!trial.regular) return false;
-  SLIDEWAY_CLAIM(reproduces(trial, n));
-  substitute(trial, n);
-  check(problem, n, trial);
-  if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
-  return trial.accurate;
-}
-
 /// Solves with W(signs), n = 1 and n = 2, by the formulas that solve_one and solve_pair use, so that the bits agree.
 template <int Capacity>
 inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed char* signs,
@@ -477,14 +461,21 @@ inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed cha
   return trial.accurate;
 }
 
-/// One trial of order n >= 1, whatever n is. Whether the matrix is regular and x accurate.
-template <int Capacity>
-inline bool attempt_any(const Hlcp<Capacity>& problem, int n, const signed char* signs,
-                        Trial<Capacity>& trial) noexcept {
-  if constexpr (Capacity > 2) {
-    if (n > 2) return attempt(problem, n, signs, trial);
-  }
-  return attempt_small(problem, n, signs, trial);
+/// Solves with W(signs), n >= 1. Returns whether data in range gave a regular matrix and an accurate x.
+template <int Capacity, class Count>
+inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
+  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
+  trial.regular = trial.accurate = false;
+  if (!select(problem, n, signs, trial)) return false;
+  const double least = eliminate(trial, n);
+  // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
+  trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
+  if (!trial.regular) return false;
+  SLIDEWAY_CLAIM(reproduces(trial, n));
+  substitute(trial, n);
+  check(problem, n, trial);
+  if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
+  return trial.accurate;
 }
 
 }  // namespace slideway::hlcp_detail

@@ -212,7 +212,7 @@ class RestEquations {
   bool attempt(const Modes<Size>& m) noexcept {
     for (int r = 0; r < size_; ++r) sign_[r] = r < table_.rough ? m.sign[table_.rough_contact[r]] : 1;
     ++trials_;
-    return hlcp_detail::attempt_any(problem_, size_, sign_, trial_);
+    return hlcp_detail::attempt(problem_, size_, sign_, trial_);
   }
 
   /// u - u0 from contact forces, the friction of the set and that of guides that slip.
