@@ -14,8 +14,8 @@ enum class Numbers {
 /// The largest order that is held against all exact solutions; above it, residuals and bits alone are.
 inline constexpr int most_exact_order = 5;
 
-/// Fails unless the answer from the signs in `start` is true, is the same from other signs or in other room (by a bit of
-/// `start`), and a refusal leaves x and sign as they were.
+/// Fails unless the answer from the signs in `start` is true, is the same from other signs or in other room (by a bit
+/// of `start`), and a refusal leaves x and sign as they were.
 void hold_hlcp(const properties::HlcpCase& problem, unsigned long long start, HlcpOptions options, Numbers numbers);
 
 }  // namespace slideway::fuzz
