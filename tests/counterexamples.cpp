@@ -104,6 +104,15 @@ TEST(Events, AreNoPoles) {
     const History h = of_file("runs_into_a_pole", method, 10);
     EXPECT_EQ(h.last.status, Status::singular_constraints);
   }
+  // With steps as long as these the pole itself is what a bracket ends at.
+  const RunStepper stepper = stepper_of_file("runs_into_a_pole", Method::dop853_located);
+  bool named = false;
+  for (int k = 1; k <= 64; ++k) {
+    const Report report = run(stepper, stepper.start(), 4 * k * dt, 20).last;
+    EXPECT_EQ(report.status, Status::singular_constraints) << "dt " << 4 * k * dt;
+    named = named || report.guide != none;
+  }
+  EXPECT_TRUE(named);
 }
 
 TEST(Uniqueness, IsNotClaimedWhereTheSlipIsRounding) {
