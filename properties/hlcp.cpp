@@ -1,6 +1,7 @@
 // The kernel's answers to problems of every kind, held against all exact ones.
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <slideway/hlcp.hpp>
 #include <slideway/properties/hlcp_shrink.hpp>
 #include <slideway/properties/rapidcheck.hpp>
@@ -67,15 +68,15 @@ RC_GTEST_PROP(HlcpProperty, HoldsAboveOrderFour, ()) {
   hold(problem, true);
 }
 
-/// The signs tried first change how many solves are needed, and no bit of a certified answer; up to order 4 of no
-/// answer.
+/// The signs tried first change how many solves are needed, and no bit of an answer up to order 4; above it, of none
+/// that is certified: which of them are, depends on the signs whose matrix the proof starts from.
 RC_GTEST_PROP(HlcpProperty, AnswersDoNotDependOnTheStart, (const HlcpCase& problem)) {
-  const HlcpAnswer first = kernel_answer(problem);
-  for (unsigned start = 1; start < 1U << problem.n; ++start) {
-    const HlcpAnswer other = kernel_answer(problem, start);
-    if (problem.n > 4 && first.uniqueness != Uniqueness::certified && other.uniqueness != Uniqueness::certified)
-      continue;
-    RC_ASSERT(same_bits(first, other, problem.n));
+  std::optional<HlcpAnswer> first;
+  for (unsigned start = 0; start < 1U << problem.n; ++start) {
+    const HlcpAnswer answer = kernel_answer(problem, start);
+    if (problem.n > 4 && answer.uniqueness != Uniqueness::certified) continue;
+    if (!first) first = answer;
+    RC_ASSERT(same_bits(*first, answer, problem.n));
   }
 }
 
