@@ -68,16 +68,23 @@ RC_GTEST_PROP(HlcpProperty, HoldsAboveOrderFour, ()) {
   hold(problem, true);
 }
 
-/// The signs tried first change how many solves are needed, and no bit of an answer up to order 4; above it, of none
-/// that is certified: which of them are, depends on the signs whose matrix the proof starts from.
+/// The signs tried first change how many solves are needed, and no bit of an answer up to order 4. Above it, of none
+/// that is certified - which are, depends on the signs whose matrix the proof starts from - and the others then deny
+/// neither that there is a solution nor that it is the only one.
 RC_GTEST_PROP(HlcpProperty, AnswersDoNotDependOnTheStart, (const HlcpCase& problem)) {
   std::optional<HlcpAnswer> first;
+  bool denied = false;
   for (unsigned start = 0; start < 1U << problem.n; ++start) {
     const HlcpAnswer answer = kernel_answer(problem, start);
-    if (problem.n > 4 && answer.uniqueness != Uniqueness::certified) continue;
+    if (problem.n > 4 && answer.uniqueness != Uniqueness::certified) {
+      denied = denied || answer.status == Status::no_solution || answer.status == Status::not_unique;
+      denied = denied || (answer.status == Status::ok && answer.uniqueness == Uniqueness::refuted);
+      continue;
+    }
     if (!first) first = answer;
     RC_ASSERT(same_bits(*first, answer, problem.n));
   }
+  RC_ASSERT(!first || !denied);
 }
 
 /// Told to go on along the signs, it gives a solution wherever there is one, and says that it is not the only one.

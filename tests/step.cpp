@@ -509,8 +509,6 @@ TEST(StepReplays, WhateverSignsAndModesItIsGivenAsGuesses) {
   }
 }
 
-// --- events ----------------------------------------------------------------------------------------------------------
-
 TEST(StepEnergy, OfEulerIsItsPowerAtTheStart) {
   Scene scene;  // 2 kg at 3 m/s, pushed by 5 N against a damper of 1 N s/m: all numbers are exact
   scene.bodies = scene.loads = scene.joint_springs = 1;
@@ -530,6 +528,8 @@ TEST(StepEnergy, OfEulerIsItsPowerAtTheStart) {
   EXPECT_EQ(report.energy.constraint_work, 0);
   EXPECT_EQ(state.v[0], 3 + 0.25 * (5 - 3) / 2);
 }
+
+// --- events ----------------------------------------------------------------------------------------------------------
 
 TEST(StepCounts, ReversalsThatItGoesOver) {
   struct Row {

@@ -23,8 +23,8 @@ Violation coulomb(const RunStepper& stepper, const RunState& state);
 /// A refusal left every byte of `before`; an answer is finite, advanced, and its friction dissipated: not less than 0,
 /// but for 2^-40 of all energy that crossed the border and what rounding moves. Located methods freeze modes in their
 /// stages, and dop853_located has negative weights: these may give what they err by, which is at most twice what
-/// shorter steps change if these err by half as much or less. 16, 128 and 1024 in place of one are tried: a step may be
-/// a hundred times what Baumgarte's gains allow. Nothing is asked where one of them is refused.
+/// 16 steps in its place change if these err by half as much or less; 128, then 1024, while each is longer than
+/// 1 / (alpha + sqrt(beta)), which Baumgarte's terms need. Nothing is asked where one of them is refused.
 Violation step_contract(const RunStepper& stepper, const RunState& before, const RunState& after, const Report& report,
                         double dt, const RunStepper::Inputs& inputs = {});
 
