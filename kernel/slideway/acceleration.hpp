@@ -58,11 +58,11 @@ SLIDEWAY_INLINE double state_rounding(const Source& source, const double* v, Gai
          (std::fabs(gains.beta) * table.length + std::fabs(gains.alpha) * speed);
 }
 
-/// Squared distance of rough contact i's row from that of its guide's other contact: forces of two contacts close to
+/// Squared distance of the row of rough contact c, i in its problem, from that of its guide's other contact: forces of two contacts close to
 /// each other are rounding divided by that.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double own_part(const Source& source, const Problem<Size>& hlcp, int i, double norm) noexcept {
-  const int c = source.tables.rough_contact[i], g = source.tables.guide_of[c];
+SLIDEWAY_INLINE double own_part(const Source& source, const Problem<Source>& hlcp, int i, int c, double norm) noexcept {
+  const int g = source.tables.guide_of[c];
   if (Size::contacts < 2 || source.scene.guide[g].contacts != 2) return norm * norm;
   const int o = c == source.tables.first_contact[g] ? i + 1 : i - 1;
   const double shared = 0.5 * (hlcp.plus[i][o] + hlcp.minus[i][o]), other = 0.5 * (hlcp.plus[o][o] + hlcp.minus[o][o]);
@@ -183,38 +183,41 @@ template <class Source, class Size = typename Source::Size>
 /// Solves at most, until contact forces have the signs that they were solved with: two suffice where one was rounding.
 inline constexpr int signs_rounds = 4;
 
-/// The guides at rest: their modes if they are to be decided, all contact forces and stiction.
+/// A part with guides at rest: their modes if they are to be decided, its contact forces and stiction.
 template <class Source, class Size = typename Source::Size>
-[[gnu::noinline]] Status hold(const Source& source, const Moment<Size>& at, const Solving& solving, const bool* rests,
-                              Work<Size>& w, Problem<Size>& hlcp, Modes<Size>& m, Reaction<Size>& r,
-                              Report& report) noexcept {
+[[gnu::noinline]] Status hold(const Source& source, int part, const Moment<Size>& at, const Solving& solving,
+                              const bool* rests, Work<Size>& w, Problem<Source>& hlcp, Modes<Size>& m,
+                              Reaction<Size>& r, Report& report) noexcept {
   const auto& table = source.tables;
   Friction<Size>& fr = w.friction;
-  for (int g = 0; g < source.scene.guides; ++g) {  // the sliding problem leaves alone what a row does not reach
-    if (!table.is_rough[g]) continue;
-    for (int f = 0; f < table.free; ++f) {
+  const int rows = table.first_row[part + 1] - table.first_row[part];
+  const Index* contact = table.rough_contact + table.first_row[part];
+  each_guide_in_part(source, part, [&](int g) {  // the sliding problem leaves alone what a row does not reach
+    each_in_part(source, part, [&](int f) {
       if (!table.guide[g].filled[f]) fr.N[g][f] = fr.T[g][f] = fr.E[g][f] = 0;
-    }
-  }
-  RestProblem<Source> problem(source, solving.hlcp, fr, hlcp);
+    });
+  });
+  RestProblem<Source> problem(source, part, solving.hlcp, fr, hlcp);
   double slack = 0;
-  for (int g = 0; g < source.scene.guides; ++g) {
-    if (!rests[g]) continue;
+  each_guide_in_part(source, part, [&](int g) {
+    if (!rests[g]) return;
     const Guide& guide = source.scene.guide[g];
     const double gamma = solving.gains.known * sliding_gamma(source, w.kinematics, g, fr.sliding[g]);
     const bool kinetic = m.mode[g] != 0 || m.leaving[g];
     problem.add(g, -gamma - solving.gains.alpha * r.slip[g], kinetic ? guide.mu : guide.mu_static);
     slack = larger(slack, solving.gains.alpha * std::fabs(r.slip[g]));
-  }
+  });
   problem.allow(4 * slack, state_rounding(source, at.v, solving.gains));
   if (at.aim != Aim::follow) {
     const Status status = problem.decide(m, report);
-    for (int g = source.scene.guides - 1; g >= 0; --g) {
-      if (rests[g] && (status != Status::ok || report.uniqueness == Uniqueness::refuted)) report.guide = g;
+    if (status != Status::ok || report.uniqueness == Uniqueness::refuted) {
+      bool named = false;
+      each_guide_in_part(source, part, [&](int g) {
+        if (rests[g] && !named) report.guide = g;
+        named = named || rests[g];
+      });
     }
-    if (status != Status::ok) {
-      return independent_contacts(hlcp, table.rough) ? status : Status::singular_constraints;
-    }
+    if (status != Status::ok) return independent_contacts(hlcp, rows) ? status : Status::singular_constraints;
   }
   // Signs were decided beside unknowns as large as preloads, and are rounding where contact forces are below that: the
   // forces found in the mode have the last word. Their sign counts for guides that slip, so they are solved for again.
@@ -222,89 +225,110 @@ template <class Source, class Size = typename Source::Size>
   for (int round = 0; round < signs_rounds && contradicted; ++round) {
     if (!problem.solve_in_mode(m, r.lambda)) return Status::singular_constraints;
     contradicted = false;
-    for (int c = 0; c < table.contacts && at.aim != Aim::follow; ++c) {
-      const int g = table.guide_of[c];
+    for (int i = 0; i < rows && at.aim != Aim::follow; ++i) {
+      const int c = contact[i], g = table.guide_of[c];
       const signed char sign = r.lambda[c] < 0 ? -1 : 1;
-      if (!table.is_rough[g] || sign == m.sign[c]) continue;
+      if (sign == m.sign[c]) continue;
       contradicted = contradicted || !rests[g] || m.mode[g] != 0;
       m.sign[c] = sign;
     }
   }
-  for (int c = 0; c < table.contacts; ++c) fr.face[c] = m.sign[c] < 0 ? -1 : 1;
   double largest = 0;
-  for (int c = 0; c < table.contacts; ++c) {
-    if (table.is_rough[table.guide_of[c]]) largest = larger(largest, std::fabs(r.lambda[c]));
+  for (int i = 0; i < rows; ++i) {
+    fr.face[contact[i]] = m.sign[contact[i]] < 0 ? -1 : 1;
+    largest = larger(largest, std::fabs(r.lambda[contact[i]]));
   }
   bool within = true;
-  for (int g = 0; g < source.scene.guides; ++g) {
-    if (!rests[g] || m.mode[g] != 0) continue;
+  each_guide_in_part(source, part, [&](int g) {
+    if (!rests[g] || m.mode[g] != 0) return;
     m.limit_left[g] = problem.limit_left(g, r.lambda);
     // 2^-40: some thousand roundings of the largest force.
     within = within && m.limit_left[g] >= -0x1p-40 * (largest + std::fabs(fr.stiction[g]));
-  }
+  });
   return within || at.aim == Aim::follow ? Status::ok : Status::inaccurate;
 }
 
-/// The guide to name where friction leaves no or several answers: the first without whose friction there is one; else
-/// the first with friction. Cost: an HLCP a guide, of a step that is refused or goes on along the signs.
-template <class Source, class Size = typename Source::Size>
-[[gnu::noinline, gnu::cold]] int guide_to_blame(const Source& source, const Problem<Size>& hlcp) noexcept {
+/// The guide to name where friction leaves a part no or several answers: the first without whose friction there is one;
+/// else the first. Cost: an HLCP a guide, of a step that is refused or goes on along the signs.
+template <class Source>
+[[gnu::noinline, gnu::cold]] int guide_to_blame(const Source& source, int part, const Problem<Source>& hlcp) noexcept {
   const auto& table = source.tables;
+  const int rows = table.first_row[part + 1] - table.first_row[part];
   int blamed = none;
-  for (int g = 0; g < source.scene.guides && blamed == none; ++g) {
-    if (!table.is_rough[g]) continue;
-    Problem<Size> without = hlcp;
-    for (int i = 0; i < table.rough; ++i) {
+  each_guide_in_part(source, part, [&](int g) {
+    if (blamed != none) return;
+    Problem<Source> without = hlcp;
+    for (int i = 0; i < rows; ++i) {
       for (int k = 0; k < source.scene.guide[g].contacts; ++k) {
         const int j = table.row_of[table.first_contact[g]] + k;
         without.plus[i][j] = without.minus[i][j] = 0.5 * (hlcp.plus[i][j] + hlcp.minus[i][j]);
       }
     }
-    HlcpSolution<at_least_one(Size::contacts)> answer = {};
-    solve(without, static_cast<int>(table.rough), answer);
+    HlcpSolution<at_least_one(most_rows<Source>())> answer = {};
+    solve(without, rows, answer);
     if (answer.status == Status::ok) blamed = g;
-  }
-  for (int g = 0; g < source.scene.guides && blamed == none; ++g) {
-    if (table.is_rough[g]) blamed = g;
-  }
-  return blamed;
+  });
+  return blamed != none ? blamed : table.rough_guide[table.first_guide[part]];
 }
 
-/// The contact forces where all guides slip.
-template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE Status press(const Source& source, Aim aim, const Solving& solving, Problem<Size>& hlcp, Modes<Size>& m,
-                             Friction<Size>& fr, Reaction<Size>& r, Report& report) noexcept {
-  const auto& table = source.tables;
-  HlcpSolution<at_least_one(Size::contacts)> answer;
-  for_each<Source, Size::contacts>(table.rough,
-                                   [&](int i) SLIDEWAY_FOLD { answer.sign[i] = m.sign[table.rough_contact[i]]; });
-  const auto count = [&] {
-    if constexpr (Source::folds) {
+/// How many rough contacts a part has: known to the compiler where the scene is, and parts are alike.
+template <class Source>
+SLIDEWAY_INLINE auto rows_of(const Source& source, int part) noexcept {
+  if constexpr (Source::folds) {
+    if constexpr (Source::tables.most_rows == Source::tables.rough)
       return std::integral_constant<int, Source::tables.rough>{};
-    } else {
-      return static_cast<int>(table.rough);
-    }
-  }();
-  if (aim == Aim::follow) {
-    if (!solve_with_signs(hlcp, count, answer.sign, answer.x)) return Status::singular_constraints;
+    else
+      return source.tables.first_row[part + 1] - source.tables.first_row[part];
   } else {
-    solve(hlcp, count, answer, solving.hlcp);
+    return source.tables.first_row[part + 1] - source.tables.first_row[part];
+  }
+}
+
+/// The contact forces of a part where all guides slip.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE Status press(const Source& source, int part, Aim aim, const Solving& solving, Problem<Source>& hlcp,
+                             Modes<Size>& m, Friction<Size>& fr, Reaction<Size>& r, Report& report) noexcept {
+  HlcpSolution<at_least_one(most_rows<Source>())> answer;
+  each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD { answer.sign[i] = m.sign[c]; });
+  const auto rows = rows_of(source, part);
+  if (aim == Aim::follow) {
+    if (!solve_with_signs(hlcp, rows, answer.sign, answer.x)) return Status::singular_constraints;
+  } else {
+    solve(hlcp, rows, answer, solving.hlcp);
     report.solves = report.solves > answer.solves ? report.solves : answer.solves;
     report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
     if (answer.uniqueness == Uniqueness::refuted || answer.status == Status::no_solution) {
-      if (report.guide == none) report.guide = guide_to_blame(source, hlcp);
+      if (report.guide == none) report.guide = guide_to_blame(source, part, hlcp);
     }
     if (answer.status != Status::ok) {
-      return independent_contacts(hlcp, table.rough) ? answer.status : Status::singular_constraints;
+      return independent_contacts(hlcp, rows) ? answer.status : Status::singular_constraints;
     }
   }
-  for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
-    const int c = table.rough_contact[i];
+  each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
     r.lambda[c] = answer.x[i];
     m.sign[c] = answer.sign[i];
     fr.face[c] = answer.sign[i] < 0 ? -1 : 1;
   });
   return Status::ok;
+}
+
+/// Rows, problem and contact forces of one part.
+template <bool all_slip, class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE Status solve_part(const Source& source, int part, const Moment<Size>& at, const Solving& solving,
+                                  const bool* rests, Work<Size>& w, Modes<Size>& m, Reaction<Size>& r,
+                                  Report& report) noexcept {
+  // Apart from `w`: what a call that is not inlined may see is not kept in registers.
+  Problem<Source> hlcp;
+  if (!assemble_part(source, w.kinematics, w.dynamics, part, w.friction, hlcp)) return Status::singular_constraints;
+  bool any_rests = false;
+  if (!all_slip) each_guide_in_part(source, part, [&](int g) { any_rests = any_rests || rests[g]; });
+  const Status status = any_rests ? hold(source, part, at, solving, rests, w, hlcp, m, r, report)
+                                  : press(source, part, at.aim, solving, hlcp, m, w.friction, r, report);
+  each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
+    m.norm[c] = w.friction.norm[c];
+    m.own[c] = own_part(source, hlcp, i, c, m.norm[c]);
+  });
+  return status;
 }
 
 /// accelerate() without guides at rest, or with. Two functions, because what holds a guide at rest is not inlined, and
@@ -315,8 +339,6 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   const auto& scene = source.scene;
   const auto& table = source.tables;
   Work<Size> w;
-  // Apart from `w`: what a call that is not inlined may see is not kept in registers.
-  Problem<Size> hlcp;
   SLIDEWAY_ASSUME(!all_slip || at.aim != Aim::impulse);
   place(source, at, solving, w, r);
   bool rests[at_least_one(Size::guides)];
@@ -329,23 +351,18 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   gather(source, w.kinematics, w.dynamics);
   if (!factor_mass(source, w.kinematics, at.q, at.v, w.dynamics)) return Status::singular_constraints;
   if (!all_slip && at.aim == Aim::impulse) place_ahead(source, at, solving, w, r);
-  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, slips, w.friction, r, hlcp)) {
+  if (!assemble(source, w.kinematics, w.dynamics, solving.gains, slips, w.friction, r)) {
     return Status::singular_constraints;
   }
 
   signed char signs[at_least_one(Size::contacts)] = {};
-  for_each<Source, Size::contacts>(table.rough,
-                                   [&](int i) SLIDEWAY_FOLD { signs[i] = m.sign[table.rough_contact[i]]; });
-  const bool any_rough = table.rough > 0;  // known to the compiler, for a scene that is
-  if (any_rough) {
-    Status status;
-    if constexpr (all_slip) {
-      status = press(source, at.aim, solving, hlcp, m, w.friction, r, report);
-    } else {
-      status = hold(source, at, solving, rests, w, hlcp, m, r, report);
-    }
-    if (status != Status::ok) return status;
-  }
+  for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD { signs[c] = m.sign[c]; });
+  Status status = Status::ok;
+  for_each<Source, Size::coordinates>(table.parts, [&](int part) SLIDEWAY_FOLD {
+    if (status != Status::ok || table.first_row[part] == table.first_row[part + 1]) return;
+    status = solve_part<all_slip>(source, part, at, solving, rests, w, m, r, report);
+  });
+  if (status != Status::ok) return status;
   resolve(source, r, w);
   for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD {
     if (!table.is_rough[table.guide_of[c]]) r.lambda[c] = w.pi[table.row_of[c]];
@@ -356,11 +373,9 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   m.state_rounding = state_rounding(source, at.v, solving.gains);
   for_each<Source, Size::contacts>(table.rough, [&](int i) SLIDEWAY_FOLD {
     const int c = table.rough_contact[i];
-    m.norm[c] = w.friction.norm[i];
-    m.own[c] = own_part(source, hlcp, i, m.norm[c]);
     // Rounding has no face of its own.
     const double noise = m.rounding * m.norm[c] + m.state_rounding;  // times m.own
-    if (m.decided && std::fabs(r.lambda[c]) * m.own[c] <= noise) m.sign[c] = signs[i];
+    if (m.decided && std::fabs(r.lambda[c]) * m.own[c] <= noise) m.sign[c] = signs[c];
   });
   from_metric(source, w.dynamics, w.u);
   for_each<Source, Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {

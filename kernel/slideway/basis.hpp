@@ -16,30 +16,33 @@ struct Basis {
   const Source& source;
   int count = 0;
   double Q[Capacity + 1][n_free];  ///< the last place is for a row that is not taken
+  int part_of[Capacity + 1];
   double along[Capacity + 1];
   double change[n_free];
 
   explicit Basis(const Source& s) noexcept : source(s) { forget(0); }
 
-  /// Where the next row is to be written, by free coordinate.
+  /// Where the next row is to be written, by free coordinate of its part.
   double* next() noexcept { return Q[count]; }
 
-  /// Takes that row, of length `size` before anything was taken from it, with its right side. False, and nothing done,
-  /// when it is a combination of those before it to rounding (rank_bound). O(count n).
-  bool take(double size, double right) noexcept {
+  /// Takes that row, of a part, of length `size` before anything was taken from it, with its right side. False, and
+  /// nothing done, when it is a combination of those before it to rounding (rank_bound). O(rows n) of its part.
+  bool take(int part, double size, double right) noexcept {
     double* row = Q[count];
     for (int twice = 0; twice < 2; ++twice) {
       for (int i = 0; i < count; ++i) {
-        const double part = inner(source, Q[i], row);
-        right -= part * along[i];
-        add_scaled(source, -part, Q[i], row);
+        if (part_of[i] != part) continue;
+        const double shared = inner(source, part, Q[i], row);
+        right -= shared * along[i];
+        add_scaled(source, part, -shared, Q[i], row);
       }
     }
-    const double rest = std::sqrt(inner(source, row, row));
+    const double rest = std::sqrt(inner(source, part, row, row));
     if (!(rest > rank_bound(source) * size) || count == Capacity) return false;
-    for (int f = 0; f < source.tables.free; ++f) row[f] *= 1 / rest;
+    each_in_part(source, part, [&](int f) SLIDEWAY_FOLD { row[f] *= 1 / rest; });
+    part_of[count] = part;
     along[count] = right / rest;
-    add_scaled(source, along[count], row, change);
+    add_scaled(source, part, along[count], row, change);
     ++count;
     return true;
   }
@@ -48,7 +51,7 @@ struct Basis {
   void forget(int rows) noexcept {
     count = rows;
     for (double& x : change) x = 0;
-    for (int i = 0; i < count; ++i) add_scaled(source, along[i], Q[i], change);
+    for (int i = 0; i < count; ++i) add_scaled(source, part_of[i], along[i], Q[i], change);
   }
 };
 

@@ -28,6 +28,7 @@ struct Friction {
   double E[n_guides][n_free];        ///< the slider's turning against the rail
   double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used when there are any
   double E_clear[n_guides][n_free];
+  double right[n_contacts];    ///< b of each rough contact
   double norm[n_contacts];     ///< |N~| of each rough contact
   double sigma[n_guides];      ///< friction per |lambda|, along the guide; 0 at rest
   double stiction[n_guides];   ///< F_0, at the first contact, N
@@ -42,9 +43,27 @@ struct Friction {
   double ideal_target[n_ideal];  ///< c_P of the pins
 };
 
-/// The HLCP of a scene's rough contacts.
-template <class Size>
-using Problem = Hlcp<at_least_one(Size::contacts)>;
+/// Rough contacts and rough guides of the largest part.
+template <class Source>
+constexpr int most_rows() noexcept {
+  if constexpr (Source::folds) {
+    return Source::tables.most_rows;
+  } else {
+    return Source::Size::contacts;
+  }
+}
+template <class Source>
+constexpr int most_guides() noexcept {
+  if constexpr (Source::folds) {
+    return Source::tables.most_guides;
+  } else {
+    return Source::Size::guides;
+  }
+}
+
+/// The HLCP of a part's rough contacts.
+template <class Source>
+using Problem = Hlcp<at_least_one(most_rows<Source>())>;
 
 /// The relative Jacobian row of a link along `direction` at `place`: the free coordinates among its columns.
 template <class Source, class Size = typename Source::Size>
@@ -72,18 +91,27 @@ SLIDEWAY_INLINE void metric_row(const Source& source, const Kinematics<Size>& k,
   to_metric(source, d, link.fill, link.fills, x);
 }
 
-/// sum x_f y_f over the free coordinates.
+/// f(free coordinate) for each of a part.
+template <class Source, class F, class Size = typename Source::Size>
+SLIDEWAY_INLINE void each_in_part(const Source& source, int part, F&& f) noexcept {
+  const auto& table = source.tables;
+  const int first = table.first_in_part[part];
+  for_each<Source, Size::coordinates>(table.first_in_part[part + 1] - first,
+                                      [&](int i) SLIDEWAY_FOLD { f(table.in_part[first + i]); });
+}
+
+/// sum x_f y_f over the free coordinates of a part.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double inner(const Source& source, const double* x, const double* y) noexcept {
+SLIDEWAY_INLINE double inner(const Source& source, int part, const double* x, const double* y) noexcept {
   double sum = 0;
-  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { sum += x[f] * y[f]; });
+  each_in_part(source, part, [&](int f) SLIDEWAY_FOLD { sum += x[f] * y[f]; });
   return sum;
 }
 
-/// y += s x over the free coordinates.
+/// y += s x over the free coordinates of a part.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void add_scaled(const Source& source, double s, const double* x, double* y) noexcept {
-  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { y[f] += s * x[f]; });
+SLIDEWAY_INLINE void add_scaled(const Source& source, int part, double s, const double* x, double* y) noexcept {
+  each_in_part(source, part, [&](int f) SLIDEWAY_FOLD { y[f] += s * x[f]; });
 }
 
 /// A row whose distance from the span of the earlier ones is below this part of its length is redundant: the distance
@@ -93,26 +121,35 @@ constexpr double rank_bound(const Source& source) noexcept {
   return 8 * detail::epsilon * (source.tables.free + source.tables.ideal);
 }
 
-/// Takes row m of Q (as P~_m) into the orthonormal set of the rows before it: twice, which is enough (Giraud and
-/// others 2005). False when it is redundant. Cost: 4 m n.
+/// f(i) for the ideal rows i < m of row m's part.
+template <class Source, class F>
+SLIDEWAY_INLINE void each_ideal_before(const Source& source, int m, F&& f) noexcept {
+  for_each<Source, Friction<typename Source::Size>::ideal>(m, [&](int i) SLIDEWAY_FOLD {
+    if (source.tables.part_of_ideal[i] == source.tables.part_of_ideal[m]) f(i);
+  });
+}
+
+/// Takes row m of Q (as P~_m) into the orthonormal set of the rows of its part before it: twice, which is enough
+/// (Giraud and others 2005). False when it is redundant. Cost: 4 m n.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool orthonormalise(const Source& source, Friction<Size>& fr, int m) noexcept {
   constexpr int capacity = Friction<Size>::ideal;
   SLIDEWAY_ASSUME(m >= 0 && m < capacity);
   double* row = fr.Q[m];
-  fr.ideal_norm[m] = std::sqrt(inner(source, row, row));
-  for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD { fr.R[m][i] = 0; });
+  const int part = source.tables.part_of_ideal[m];
+  fr.ideal_norm[m] = std::sqrt(inner(source, part, row, row));
+  each_ideal_before(source, m, [&](int i) SLIDEWAY_FOLD { fr.R[m][i] = 0; });
   for (int pass = 0; pass < 2; ++pass) {
-    for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD {
-      const double part = inner(source, fr.Q[i], row);
-      fr.R[m][i] += part;
-      add_scaled(source, -part, fr.Q[i], row);
+    each_ideal_before(source, m, [&](int i) SLIDEWAY_FOLD {
+      const double shared = inner(source, part, fr.Q[i], row);
+      fr.R[m][i] += shared;
+      add_scaled(source, part, -shared, fr.Q[i], row);
     });
   }
-  const double rest = std::sqrt(inner(source, row, row));
+  const double rest = std::sqrt(inner(source, part, row, row));
   if (!(rest > rank_bound(source) * fr.ideal_norm[m])) return false;
   fr.R[m][m] = rest;
-  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { row[f] *= 1 / rest; });
+  each_in_part(source, part, [&](int f) SLIDEWAY_FOLD { row[f] *= 1 / rest; });
   return true;
 }
 
@@ -148,28 +185,31 @@ SLIDEWAY_INLINE bool eliminate_ideal(const Source& source, const Kinematics<Size
     if (!independent) return;
     independent = orthonormalise(source, fr, m);
     if (!independent) return;
-    for_each<Source, capacity>(m, [&](int i) SLIDEWAY_FOLD { fr.e[m] -= fr.R[m][i] * fr.e[i]; });
+    each_ideal_before(source, m, [&](int i) SLIDEWAY_FOLD { fr.e[m] -= fr.R[m][i] * fr.e[i]; });
     fr.e[m] /= fr.R[m][m];
-    const double lack = fr.e[m] - inner(source, fr.Q[m], fr.u0);
-    add_scaled(source, lack, fr.Q[m], fr.u0);
+    const int part = table.part_of_ideal[m];
+    const double lack = fr.e[m] - inner(source, part, fr.Q[m], fr.u0);
+    add_scaled(source, part, lack, fr.Q[m], fr.u0);
   });
   return independent;
 }
 
-/// row less its part along the ideal rows.
+/// A row of a part, less what it has along the ideal rows.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void clear_of_ideal(const Source& source, const Friction<Size>& fr, const double* row,
+SLIDEWAY_INLINE void clear_of_ideal(const Source& source, int part, const Friction<Size>& fr, const double* row,
                                     double* rest) noexcept {
-  for_each<Source, Size::coordinates>(source.tables.free, [&](int f) SLIDEWAY_FOLD { rest[f] = row[f]; });
+  each_in_part(source, part, [&](int f) SLIDEWAY_FOLD { rest[f] = row[f]; });
   for_each<Source, Friction<Size>::ideal>(source.tables.ideal, [&](int i) SLIDEWAY_FOLD {
-    add_scaled(source, -inner(source, fr.Q[i], rest), fr.Q[i], rest);
+    if (source.tables.part_of_ideal[i] != part) return;
+    add_scaled(source, part, -inner(source, part, fr.Q[i], rest), fr.Q[i], rest);
   });
 }
 
 /// |n + s e|^2
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE double squared_length(const Source& source, const double* n, const double* e, double s) noexcept {
-  return inner(source, n, n) + s * (2 * inner(source, n, e) + s * inner(source, e, e));
+SLIDEWAY_INLINE double squared_length(const Source& source, int part, const double* n, const double* e,
+                                      double s) noexcept {
+  return inner(source, part, n, n) + s * (2 * inner(source, part, n, e) + s * inner(source, part, e, e));
 }
 
 /// Geometry of all contacts, the targets c, the sliding speeds and, if `measure`, the drift. Linear in the contacts.
@@ -210,14 +250,14 @@ SLIDEWAY_INLINE void apply_steady_friction(const Source& source, const signed ch
   });
 }
 
-/// Rows and right side of rough guide g.
+/// Rows and right side of rough guide g, of a part.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, int g,
-                                Friction<Size>& fr, Problem<Size>& hlcp) noexcept {
+SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, int part,
+                                int g, Friction<Size>& fr) noexcept {
   const auto& table = source.tables;
   const Link<Size>& link = table.guide[g];
   const Sliding& s = fr.sliding[g];
-  const int c = table.first_contact[g], m = table.row_of[c];
+  const int c = table.first_contact[g];
   const bool two = source.scene.guide[g].contacts == 2;
   double *N = fr.N[g], *T = fr.T[g], *E = fr.E[g];
   for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
@@ -238,23 +278,23 @@ SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k,
   } else {
     to_metric(source, d, link.fill, link.fills, N, T);
   }
-  if (table.ideal > 0) clear_of_ideal(source, fr, N, fr.N_clear[g]);
-  if (table.ideal > 0 && two) clear_of_ideal(source, fr, E, fr.E_clear[g]);
+  if (table.ideal > 0) clear_of_ideal(source, part, fr, N, fr.N_clear[g]);
+  if (table.ideal > 0 && two) clear_of_ideal(source, part, fr, E, fr.E_clear[g]);
   double moved = 0, turned = 0;
   for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
     const int f = link.fill[e];
     moved += N[f] * fr.u0[f];
     if (two) turned += E[f] * fr.u0[f];
   });
-  hlcp.b[m] = fr.target[c] - moved;
-  if (two) hlcp.b[m + 1] = fr.target[c + 1] - moved - s.along * turned;
+  fr.right[c] = fr.target[c] - moved;
+  if (two) fr.right[c + 1] = fr.target[c + 1] - moved - s.along * turned;
 }
 
 /// S and S* between the contacts of rough guides g (rows) and o (columns): with s and f for along and across,
 ///   S_ij = NN + s_i EN + s_j NE + s_i s_j EE,  S*_ij = sigma_o (NT + s_i ET - f_j (NE + s_i EE)),  s_0 = f_0 = 0.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<Size>& fr,
-                            Problem<Size>& hlcp) noexcept {
+                            Problem<Source>& hlcp) noexcept {
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
@@ -290,42 +330,67 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   }
 }
 
-/// The rows, S, S* and b of the rough contacts, given the slip direction of each guide; those at rest bring no friction
-/// here. False when rank is lost.
-/// Cost: guides^2 times the overlap of their paths.
+/// u0 and friction's coefficients, given the slip direction of each guide; those at rest bring no friction here. False
+/// when ideal rows are redundant.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, Gains gains,
-                              const signed char* mode, Friction<Size>& fr, Reaction<Size>& r,
-                              Problem<Size>& hlcp) noexcept {
+                              const signed char* mode, Friction<Size>& fr, Reaction<Size>& r) noexcept {
   const auto& scene = source.scene;
   const auto& table = source.tables;
   for_each<Source, Size::coordinates>(table.free,
                                       [&](int f) SLIDEWAY_FOLD { fr.free_motion[f] = d.h[table.free_coordinate[f]]; });
   to_metric(source, d, table.every, table.free, fr.free_motion);
   for_each<Source, Size::coordinates>(table.free, [&](int f) SLIDEWAY_FOLD { fr.u0[f] = fr.free_motion[f]; });
-  bool independent = table.ideal == 0 || eliminate_ideal(source, k, d, gains, fr, r);
-
   for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
     fr.sigma[g] = mode[g] > 0 ? -scene.guide[g].mu : mode[g] < 0 ? scene.guide[g].mu : 0;
     fr.stiction[g] = 0;
-    if (table.is_rough[g]) guide_rows(source, k, d, g, fr, hlcp);
   });
-  for_each<Source, Size::guides>(scene.guides, [&](int g) SLIDEWAY_FOLD {
-    for_each<Source, Size::guides>(scene.guides, [&](int o) SLIDEWAY_FOLD {
-      if (table.is_rough[g] && table.is_rough[o]) couple(source, g, o, fr, hlcp);
-    });
+  for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD { fr.face[c] = 1; });
+  return table.ideal == 0 || eliminate_ideal(source, k, d, gains, fr, r);
+}
+
+/// f(rough guide) for each of a part.
+template <class Source, class F>
+SLIDEWAY_INLINE void each_guide_in_part(const Source& source, int part, F&& f) noexcept {
+  const auto& table = source.tables;
+  const int first = table.first_guide[part];
+  for_each<Source, most_guides<Source>()>(table.first_guide[part + 1] - first,
+                                          [&](int i) SLIDEWAY_FOLD { f(table.rough_guide[first + i]); });
+}
+
+/// f(row, contact) for each rough contact of a part.
+template <class Source, class F>
+SLIDEWAY_INLINE void each_row_in_part(const Source& source, int part, F&& f) noexcept {
+  const auto& table = source.tables;
+  const int first = table.first_row[part];
+  for_each<Source, most_rows<Source>()>(table.first_row[part + 1] - first,
+                                        [&](int m) SLIDEWAY_FOLD { f(m, table.rough_contact[first + m]); });
+}
+
+/// The rows, S, S* and b of a part's rough contacts. False when rank is lost. Cost: guides^2 times the overlap of their
+/// paths.
+template <class Source, class Size = typename Source::Size>
+SLIDEWAY_INLINE bool assemble_part(const Source& source, const Kinematics<Size>& k, const Dynamics<Size>& d, int part,
+                                   Friction<Size>& fr, Problem<Source>& hlcp) noexcept {
+  const auto& table = source.tables;
+  bool independent = true;
+  each_guide_in_part(source, part, [&](int g) SLIDEWAY_FOLD { guide_rows(source, k, d, part, g, fr); });
+  each_guide_in_part(source, part, [&](int g) SLIDEWAY_FOLD {
+    each_guide_in_part(source, part, [&](int o) SLIDEWAY_FOLD { couple(source, g, o, fr, hlcp); });
   });
-  for_each<Source, Size::contacts>(table.rough, [&](int m) SLIDEWAY_FOLD {
+  each_row_in_part(source, part, [&](int m, int c) SLIDEWAY_FOLD {
+    hlcp.b[m] = fr.right[c];
     double squared = 0.5 * (hlcp.plus[m][m] + hlcp.minus[m][m]);
     if (table.ideal > 0) {  // S has what the ideal rows leave of the row
-      const int c = table.rough_contact[m], g = table.guide_of[c];
+      const int g = table.guide_of[c];
       const bool first = c == table.first_contact[g];
-      const double whole = squared_length(source, fr.N[g], first ? fr.N[g] : fr.E[g], first ? 0 : fr.sliding[g].along);
+      const double whole =
+          squared_length(source, part, fr.N[g], first ? fr.N[g] : fr.E[g], first ? 0 : fr.sliding[g].along);
       const double bound = rank_bound(source);
       independent = independent && squared > bound * bound * whole;
       squared = whole;
     }
-    fr.norm[m] = std::sqrt(squared);
+    fr.norm[c] = std::sqrt(squared);
   });
   return independent;
 }

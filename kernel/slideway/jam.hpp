@@ -18,8 +18,9 @@ class JammedGuides : public RestEquations<Source> {
   using Base::n_contacts, Base::n_free, Base::n_guides, Base::order;
   using typename Base::Size;
 
-  JammedGuides(const Source& source, const HlcpOptions& options, Friction<Size>& fr, Problem<Size>& sliding) noexcept
-      : Base(source, fr, sliding), options_(options) {}
+  JammedGuides(const Source& source, int part, const HlcpOptions& options, Friction<Size>& fr,
+               Problem<Source>& sliding) noexcept
+      : Base(source, part, fr, sliding), options_(options) {}
 
   /// What roundings of the state, and speeds that are not quite zero, make of Baumgarte's terms, m/s^2: rows that
   /// follow from others are met but for that.
@@ -29,9 +30,9 @@ class JammedGuides : public RestEquations<Source> {
   }
 
  protected:
-  using Base::attempt, Base::build_in_mode, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
+  using Base::attempt, Base::build_in_mode, Base::contact, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
       Base::normal, Base::take_guide;
-  using Base::source_, Base::table_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
+  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
       Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::bound_, Base::bound_count_,
       Base::size_, Base::trials_, Base::problem_, Base::trial_;
 
@@ -84,12 +85,12 @@ class JammedGuides : public RestEquations<Source> {
   /// Contact signs for given modes: those of `m` first, then all others.
   Feasible try_signs(const Modes<Size>& m, Modes<Size>& tried) noexcept {
     if (!bind(tried)) return Feasible::no;
-    const int n = table_.rough;
+    const int n = rows_;
     const long long patterns = n < 40 ? 1LL << n : 1LL << 40;
     for (long long flips = 0; flips < patterns; ++flips) {
       if (trials_ >= options_.max_solves) return Feasible::unknown;
       for (int r = 0; r < n; ++r) {
-        const int c = table_.rough_contact[r];
+        const int c = contact(r);
         const int sign = m.sign[c] < 0 ? -1 : 1;
         tried.sign[c] = static_cast<signed char>(r < 40 && ((flips >> r) & 1) != 0 ? -sign : sign);
       }
@@ -142,7 +143,7 @@ class JammedGuides : public RestEquations<Source> {
     return true;
   }
 
-  using Search = LeastNorm<at_least_one(Size::contacts + 3 * Size::guides), at_least_one(Size::guides)>;
+  using Search = LeastNorm<at_least_one(most_rows<Source>() + 3 * most_guides<Source>()), at_least_one(most_guides<Source>())>;
 
   void keep(double* x) const noexcept {
     for (int r = 0; r < size_; ++r) x[r] = trial_.x[r];
@@ -151,8 +152,8 @@ class JammedGuides : public RestEquations<Source> {
   /// trial_.x = what 1 N of friction at guide g changes in the solution.
   void respond(int g) noexcept {
     double rest[order];
-    for (int r = 0; r < table_.rough; ++r) rest[r] = -normal(table_.rough_contact[r], T_[g]);
-    for (int h = 0; h < bound_count_; ++h) rest[table_.rough + h] = -inner(source_, T_[bound_[h]], T_[g]);
+    for (int r = 0; r < rows_; ++r) rest[r] = -normal(contact(r), T_[g]);
+    for (int h = 0; h < bound_count_; ++h) rest[rows_ + h] = -inner(source_, part_, T_[bound_[h]], T_[g]);
     for (double& component : trial_.x) component = 0;
     hlcp_detail::correct(problem_, size_, rest, trial_);
   }
@@ -163,8 +164,8 @@ class JammedGuides : public RestEquations<Source> {
   void each_condition(const Modes<Size>& m, const double (*x)[order], const int* parameter, int parameters, double size,
                       F&& f) noexcept {
     double row[n_guides + 1];
-    for (int r = 0; r < table_.rough; ++r) {
-      for (int p = 0; p <= parameters; ++p) row[p] = m.sign[table_.rough_contact[r]] < 0 ? -x[p][r] : x[p][r];
+    for (int r = 0; r < rows_; ++r) {
+      for (int p = 0; p <= parameters; ++p) row[p] = m.sign[contact(r)] < 0 ? -x[p][r] : x[p][r];
       f(row, 0.0);
     }
     for (int i = 0; i < count_; ++i) {
@@ -180,7 +181,7 @@ class JammedGuides : public RestEquations<Source> {
           row[p] = p == 0 ? source_.scene.guide[g].preload : 0;
           for (int c = 0; c < source_.scene.guide[g].contacts; ++c) {
             const int r = table_.row_of[table_.first_contact[g]] + c;
-            row[p] += coefficient_[g] * (m.sign[table_.rough_contact[r]] < 0 ? -x[p][r] : x[p][r]);
+            row[p] += coefficient_[g] * (m.sign[contact(r)] < 0 ? -x[p][r] : x[p][r]);
           }
           row[p] -= side * friction(m, x[p], parameter, p, g);
         }
@@ -194,20 +195,20 @@ class JammedGuides : public RestEquations<Source> {
     if (!m.bound[g]) return p > 0 && parameter[p - 1] == g ? 1 : 0;
     int h = 0;
     while (bound_[h] != g) ++h;
-    return x[table_.rough + h];
+    return x[rows_ + h];
   }
 
   void leaving_row(const Modes<Size>& m, const double (*x)[order], const int* parameter, int parameters, int g,
                    double* row) noexcept {
     for (int p = 0; p <= parameters; ++p) {
       double lambda[n_contacts], u[n_free] = {};
-      for (int r = 0; r < table_.rough; ++r) lambda[table_.rough_contact[r]] = x[p][r];
+      for (int r = 0; r < rows_; ++r) lambda[contact(r)] = x[p][r];
       for (int i = 0; i < count_; ++i) {
         const int o = set_[i];
         fr_.stiction[o] = m.mode[o] != 0 ? (p == 0 ? known_[o] : 0) : friction(m, x[p], parameter, p, o);
       }
       gain(m, lambda, u);
-      row[p] = m.mode[g] * (inner(source_, T_[g], u) - (p == 0 ? lack_[g] : 0)) / mobility_[g];
+      row[p] = m.mode[g] * (inner(source_, part_, T_[g], u) - (p == 0 ? lack_[g] : 0)) / mobility_[g];
     }
   }
 
@@ -227,7 +228,7 @@ class JammedGuides : public RestEquations<Source> {
     Search search;
     search.dimension = parameters;
     SLIDEWAY_ASSUME(parameters <= n_guides);
-    const int n = table_.rough;
+    const int n = rows_;
     double R[n_guides][n_guides] = {}, s_0[n_guides] = {};
     for (int p = 0; p < parameters; ++p) {
       s_0[p] = 0;

@@ -62,8 +62,9 @@ class Projection {
     if (!metric()) return false;
     take_constraints(0, 0);
     take_guides(held);
-    const double change = std::sqrt(inner(source_, basis_.change, basis_.change));
-    if (!(change <= most * length(by))) return false;
+    double squared = 0;
+    for (int f = 0; f < source_.tables.free; ++f) squared += basis_.change[f] * basis_.change[f];
+    if (!(std::sqrt(squared) <= most * length(by))) return false;
     apply(v_);
     return true;
   }
@@ -93,10 +94,10 @@ class Projection {
 
   bool take(const Link<Size>& link, Vec2 place, Vec2 direction, double right) noexcept {
     double* row = basis_.next();
-    for (int f = 0; f < source_.tables.free; ++f) row[f] = 0;
-    set_row(source_, k_, link, place, direction, row);
-    to_metric(source_, d_, source_.tables.every, source_.tables.free, row);
-    return basis_.take(std::sqrt(inner(source_, row, row)), right);
+    const int part = detail::part_of(source_.tables, link);
+    each_in_part(source_, part, [&](int f) { row[f] = 0; });
+    metric_row(source_, k_, d_, link, place, direction, row);
+    return basis_.take(part, std::sqrt(inner(source_, part, row, row)), right);
   }
 
   /// All constraints, to be moved by -(positions Phi + rates Phi'). False when they are redundant.

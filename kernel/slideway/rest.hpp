@@ -48,10 +48,10 @@ class RestProblem : public JammedGuides<Source> {
   }
 
  private:
-  using Base::bound_of, Base::decide_jammed, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
+  using Base::bound_of, Base::contact, Base::decide_jammed, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
       Base::normal, Base::note, Base::set_motion_row, Base::set_sigma, Base::span_contacts, Base::start_problem,
       Base::take_guide;
-  using Base::source_, Base::table_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
+  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
       Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::open_, Base::open_count_, Base::size_,
       Base::problem_, Base::roundings_, Base::fixed_, Base::dwells_, Base::jammed_, Base::options_;
 
@@ -82,14 +82,14 @@ class RestProblem : public JammedGuides<Source> {
   /// The set-valued law for all guides whose mode is open: two unknowns each.
   void build_set_valued(const Modes<Size>& m) noexcept {
     set_sigma(m);
-    const int n = table_.rough;
+    const int n = rows_;
     start_problem(n + 2 * open_count_);
     for (int i = 0; i < open_count_; ++i) {
       const int g = open_[i], limit = n + 2 * i, motion = limit + 1;
       for (int r = 0; r < n; ++r) {
-        const double half = 0.5 * normal(table_.rough_contact[r], T_[g]);
+        const double half = 0.5 * normal(contact(r), T_[g]);
         set_friction_columns(r, i, half);
-        if (table_.guide_of[table_.rough_contact[r]] == g) {
+        if (table_.guide_of[contact(r)] == g) {
           problem_.plus[limit][r] = -2 * coefficient_[g];
           problem_.minus[limit][r] = 2 * coefficient_[g];
         }
@@ -99,7 +99,7 @@ class RestProblem : public JammedGuides<Source> {
       problem_.b[limit] = 2 * source_.scene.guide[g].preload;
       set_motion_row(motion, g);
       for (int o = 0; o < open_count_; ++o) {
-        set_friction_columns(motion, o, 0.5 * inner(source_, T_[g], T_[open_[o]]));
+        set_friction_columns(motion, o, 0.5 * inner(source_, part_, T_[g], T_[open_[o]]));
       }
       // Less kappa (a+ - a-), a = (|y| - y) / 2: nothing where y > 0.
       problem_.minus[motion][limit] += mobility_[g];
@@ -109,7 +109,7 @@ class RestProblem : public JammedGuides<Source> {
 
   /// F = (|y+| - |y-|) / 2 of the i-th open guide, times 2 half, in a row.
   void set_friction_columns(int row, int i, double half) noexcept {
-    const int first = table_.rough + 2 * i;
+    const int first = rows_ + 2 * i;
     problem_.plus[row][first] = half;
     problem_.minus[row][first] = -half;
     problem_.plus[row][first + 1] = -half;
@@ -128,17 +128,17 @@ class RestProblem : public JammedGuides<Source> {
         known_[g] = known_force(m, g);
       }
     }
-    const int n = table_.rough;
+    const int n = rows_;
     if (n + 2 * open_count_ > order) return Status::solve_limit;
     build_set_valued(m);
     HlcpSolution<order> answer;
-    for (int r = 0; r < size_; ++r) answer.sign[r] = r < n ? m.sign[table_.rough_contact[r]] : 1;
+    for (int r = 0; r < size_; ++r) answer.sign[r] = r < n ? m.sign[contact(r)] : 1;
     hlcp_solve(answer);
     note(report, answer.uniqueness, answer.solves);
     if (answer.status != Status::ok) return answer.status;
     double largest = 0;
     for (int r = 0; r < size_; ++r) largest = larger(largest, std::fabs(answer.x[r]));
-    for (int r = 0; r < n; ++r) m.sign[table_.rough_contact[r]] = answer.sign[r];
+    for (int r = 0; r < n; ++r) m.sign[contact(r)] = answer.sign[r];
     // An a below the answer's own rounding (its residual bound, 64 times for the condition) is none: rest is preferred.
     const double still = 64 * 5 * (size_ + 1) * 0x1p-53 * largest;
     for (int i = 0; i < open_count_; ++i) {
@@ -184,7 +184,7 @@ class RestProblem : public JammedGuides<Source> {
     bool turned = false;
     for (int i = 0; i < count_; ++i) {
       const int g = set_[i];
-      if (candidate_[g] == 0 || fixed_[g] || m.mode[g] * (inner(source_, T_[g], u) - lack_[g]) >= -bound_of(g, u))
+      if (candidate_[g] == 0 || fixed_[g] || m.mode[g] * (inner(source_, part_, T_[g], u) - lack_[g]) >= -bound_of(g, u))
         continue;
       m.mode[g] = 0;
       if (!m.leaving[g]) coefficient_[g] = source_.scene.guide[g].mu_static;

@@ -7,10 +7,12 @@
 
 namespace slideway {
 
-template <class Size>
-inline constexpr int rest_order = at_least_one(Size::contacts + 2 * Size::guides < hlcp_max_order
-                                                   ? Size::contacts + 2 * Size::guides
-                                                   : hlcp_max_order);
+/// The largest problem of guides at rest.
+template <class Source>
+constexpr int rest_order() noexcept {
+  const int all = most_rows<Source>() + 2 * most_guides<Source>();
+  return at_least_one(all < hlcp_max_order ? all : hlcp_max_order);
+}
 
 /// What one evaluation leaves to the next.
 template <class Size>
@@ -35,17 +37,23 @@ struct Modes {
   constexpr double motion_noise(int c) const noexcept { return rounding * norm[c]; }
 };
 
-/// Guides whose sliding speed is zero at one instant, the `set`: their rows beside those of the contacts, and the
-/// problem in a given mode. T^ and so on as in friction.hpp.
+/// Guides of one part whose sliding speed is zero at one instant, the `set`: their rows beside those of the contacts,
+/// and the problem in a given mode. T^ and so on as in friction.hpp.
 template <class Source>
 class RestEquations {
  public:
   using Size = typename Source::Size;
   static constexpr int n_free = at_least_one(Size::coordinates), n_guides = at_least_one(Size::guides),
-                       n_contacts = at_least_one(Size::contacts), order = rest_order<Size>;
+                       n_contacts = at_least_one(Size::contacts), order = rest_order<Source>();
 
-  RestEquations(const Source& source, Friction<Size>& fr, Problem<Size>& sliding) noexcept
-      : source_(source), table_(source.tables), fr_(fr), sliding_(sliding) {}
+  RestEquations(const Source& source, int part, Friction<Size>& fr, Problem<Source>& sliding) noexcept
+      : source_(source),
+        table_(source.tables),
+        part_(part),
+        first_row_(table_.first_row[part]),
+        rows_(table_.first_row[part + 1] - first_row_),
+        fr_(fr),
+        sliding_(sliding) {}
 
   /// Guide g is at rest. `hold`: what keeps it there is T q'' = hold, m/s^2. `coefficient`: mu of the limit.
   void add(int g, double hold, double coefficient) noexcept {
@@ -53,14 +61,14 @@ class RestEquations {
     coefficient_[g] = coefficient;
     double* T = T_[g];
     if (table_.ideal > 0) {
-      clear_of_ideal(source_, fr_, fr_.T[g], T);
+      clear_of_ideal(source_, part_, fr_, fr_.T[g], T);
     } else {
-      for (int f = 0; f < table_.free; ++f) T[f] = fr_.T[g][f];
+      each_in_part(source_, part_, [&](int f) { T[f] = fr_.T[g][f]; });
     }
-    lack_[g] = hold - inner(source_, fr_.T[g], fr_.u0);
-    mobility_[g] = inner(source_, fr_.N[g], fr_.N[g]) + inner(source_, fr_.T[g], fr_.T[g]);
+    lack_[g] = hold - inner(source_, part_, fr_.T[g], fr_.u0);
+    mobility_[g] = inner(source_, part_, fr_.N[g], fr_.N[g]) + inner(source_, part_, fr_.T[g], fr_.T[g]);
     // Terms of `lack`: u0 with the row's length, and what hold is made of.
-    scale_[g] = std::sqrt(mobility_[g] * inner(source_, fr_.u0, fr_.u0)) + std::fabs(hold);
+    scale_[g] = std::sqrt(mobility_[g] * inner(source_, part_, fr_.u0, fr_.u0)) + std::fabs(hold);
   }
 
   /// Contact forces and stiction in the modes and with the signs of m, whether or not they are allowed there: one
@@ -69,9 +77,9 @@ class RestEquations {
     for (int i = 0; i < count_; ++i) known_[set_[i]] = known_force(m, set_[i]);
     build_in_mode(m);
     if (!attempt(m)) return false;
-    for (int r = 0; r < table_.rough; ++r) lambda[table_.rough_contact[r]] = trial_.x[r];
+    for (int r = 0; r < rows_; ++r) lambda[contact(r)] = trial_.x[r];
     for (int i = 0; i < count_; ++i) fr_.stiction[set_[i]] = known_[set_[i]];
-    for (int h = 0; h < bound_count_; ++h) fr_.stiction[bound_[h]] = trial_.x[table_.rough + h];
+    for (int h = 0; h < bound_count_; ++h) fr_.stiction[bound_[h]] = trial_.x[rows_ + h];
     return true;
   }
 
@@ -88,33 +96,34 @@ class RestEquations {
  protected:
   const double* N(int g) const noexcept { return table_.ideal > 0 ? fr_.N_clear[g] : fr_.N[g]; }
   const double* E(int g) const noexcept { return table_.ideal > 0 ? fr_.E_clear[g] : fr_.E[g]; }
+  int contact(int row) const noexcept { return table_.rough_contact[first_row_ + row]; }
   bool is_second(int c) const noexcept { return c != table_.first_contact[table_.guide_of[c]]; }
 
   /// N^_c . x of contact c.
   double normal(int c, const double* x) const noexcept {
     const int g = table_.guide_of[c];
-    const double first = inner(source_, N(g), x);
-    return is_second(c) ? first + fr_.sliding[g].along * inner(source_, E(g), x) : first;
+    const double first = inner(source_, part_, N(g), x);
+    return is_second(c) ? first + fr_.sliding[g].along * inner(source_, part_, E(g), x) : first;
   }
 
   /// x . T_c of contact c, x clear of the ideal rows.
   double tangential(int c, const double* x) const noexcept {
     const int g = table_.guide_of[c];
-    const double first = inner(source_, fr_.T[g], x);
-    return is_second(c) ? first - fr_.sliding[g].across * inner(source_, fr_.E[g], x) : first;
+    const double first = inner(source_, part_, fr_.T[g], x);
+    return is_second(c) ? first - fr_.sliding[g].across * inner(source_, part_, fr_.E[g], x) : first;
   }
 
   /// The contacts' rows, and the part of u - u0 that they decide.
   void span_contacts() noexcept {
     basis_.forget(0);
-    for (int r = 0; r < table_.rough; ++r) {
-      const int c = table_.rough_contact[r], g = table_.guide_of[c];
+    for (int r = 0; r < rows_; ++r) {
+      const int c = contact(r), g = table_.guide_of[c];
       double* row = basis_.next();
-      for (int f = 0; f < table_.free; ++f) {
+      each_in_part(source_, part_, [&](int f) {
         row[f] = N(g)[f];
         if (is_second(c)) row[f] += fr_.sliding[g].along * E(g)[f];
-      }
-      basis_.take(fr_.norm[r], sliding_.b[r]);
+      });
+      basis_.take(part_, fr_.norm[c], sliding_.b[r]);
     }
     contact_rows_ = basis_.count;
   }
@@ -122,18 +131,18 @@ class RestEquations {
   /// Takes guide g's row into the basis; false, and nothing done, if it is a combination of those there.
   bool take_guide(int g) noexcept {
     double* row = basis_.next();
-    for (int f = 0; f < table_.free; ++f) row[f] = T_[g][f];
-    return basis_.take(std::sqrt(mobility_[g]), lack_[g]);
+    each_in_part(source_, part_, [&](int f) { row[f] = T_[g][f]; });
+    return basis_.take(part_, std::sqrt(mobility_[g]), lack_[g]);
   }
 
   /// v' + alpha v that the basis leaves to a guide whose row is in its span.
-  double excess(int g) const noexcept { return inner(source_, T_[g], basis_.change) - lack_[g]; }
+  double excess(int g) const noexcept { return inner(source_, part_, T_[g], basis_.change) - lack_[g]; }
 
   /// What rounding makes of that: terms of both, some tens of roundings each.
   double excess_bound(int g) const noexcept { return bound_of(g, basis_.change); }
 
   double bound_of(int g, const double* u) const noexcept {
-    return 64 * rank_bound(source_) * (scale_[g] + std::sqrt(mobility_[g] * inner(source_, u, u)));
+    return 64 * rank_bound(source_) * (scale_[g] + std::sqrt(mobility_[g] * inner(source_, part_, u, u)));
   }
 
   /// Of a guide at rest before: what its preload does once it slips, and its share if it is held but not bound. N
@@ -149,9 +158,7 @@ class RestEquations {
       const double sigma = -m.mode[o] * coefficient_[o];
       if (sigma == fr_.sigma[o]) continue;
       fr_.sigma[o] = sigma;
-      for (int g = 0; g < source_.scene.guides; ++g) {
-        if (table_.is_rough[g]) couple(source_, g, o, fr_, sliding_);
-      }
+      each_guide_in_part(source_, part_, [&](int g) { couple(source_, g, o, fr_, sliding_); });
     }
   }
 
@@ -160,30 +167,30 @@ class RestEquations {
     size_ = size;
     for (int i = 0; i < size; ++i) {
       for (int j = 0; j < size; ++j) {
-        const bool old = i < table_.rough && j < table_.rough;
+        const bool old = i < rows_ && j < rows_;
         problem_.plus[i][j] = old ? sliding_.plus[i][j] : 0;
         problem_.minus[i][j] = old ? sliding_.minus[i][j] : 0;
       }
-      problem_.b[i] = i < table_.rough ? sliding_.b[i] : 0;
+      problem_.b[i] = i < rows_ ? sliding_.b[i] : 0;
     }
     for (int i = 0; i < count_; ++i) {
       const double force = known_[set_[i]];
       if (force == 0) continue;
-      for (int r = 0; r < table_.rough; ++r) problem_.b[r] -= normal(table_.rough_contact[r], T_[set_[i]]) * force;
+      for (int r = 0; r < rows_; ++r) problem_.b[r] -= normal(contact(r), T_[set_[i]]) * force;
     }
   }
 
   /// Row `row` = T q'' of guide g in the contact forces; its right side.
   void set_motion_row(int row, int g) noexcept {
-    for (int r = 0; r < table_.rough; ++r) {
-      const int c = table_.rough_contact[r];
+    for (int r = 0; r < rows_; ++r) {
+      const int c = contact(r);
       const double S = normal(c, T_[g]), S_star = fr_.sigma[table_.guide_of[c]] * tangential(c, T_[g]);
       problem_.plus[row][r] = S + S_star;
       problem_.minus[row][r] = S - S_star;
     }
     problem_.b[row] = lack_[g];
     for (int i = 0; i < count_; ++i) {
-      if (known_[set_[i]] != 0) problem_.b[row] -= inner(source_, T_[g], T_[set_[i]]) * known_[set_[i]];
+      if (known_[set_[i]] != 0) problem_.b[row] -= inner(source_, part_, T_[g], T_[set_[i]]) * known_[set_[i]];
     }
   }
 
@@ -194,46 +201,47 @@ class RestEquations {
     for (int i = 0; i < count_; ++i) {
       if (m.mode[set_[i]] == 0 && m.bound[set_[i]]) bound_[bound_count_++] = set_[i];
     }
-    const int n = table_.rough;
+    const int n = rows_;
     start_problem(n + bound_count_);
     for (int h = 0; h < bound_count_; ++h) {
       const int g = bound_[h];
       set_motion_row(n + h, g);
       for (int r = 0; r < n; ++r) {
-        problem_.plus[r][n + h] = problem_.minus[r][n + h] = normal(table_.rough_contact[r], T_[g]);
+        problem_.plus[r][n + h] = problem_.minus[r][n + h] = normal(contact(r), T_[g]);
       }
       for (int o = 0; o < bound_count_; ++o) {
-        problem_.plus[n + h][n + o] = problem_.minus[n + h][n + o] = inner(source_, T_[g], T_[bound_[o]]);
+        problem_.plus[n + h][n + o] = problem_.minus[n + h][n + o] = inner(source_, part_, T_[g], T_[bound_[o]]);
       }
     }
   }
 
   /// One linear solve with the contact signs of m. x in trial_.
   bool attempt(const Modes<Size>& m) noexcept {
-    for (int r = 0; r < size_; ++r) sign_[r] = r < table_.rough ? m.sign[table_.rough_contact[r]] : 1;
+    for (int r = 0; r < size_; ++r) sign_[r] = r < rows_ ? m.sign[contact(r)] : 1;
     ++trials_;
     return hlcp_detail::attempt(problem_, size_, sign_, trial_);
   }
 
   /// u - u0 from contact forces, the friction of the set and that of guides that slip.
   void gain(const Modes<Size>& m, const double* lambda, double* u) const noexcept {
-    for (int f = 0; f < table_.free; ++f) u[f] = 0;
-    for (int r = 0; r < table_.rough; ++r) {
-      const int c = table_.rough_contact[r], g = table_.guide_of[c];
+    each_in_part(source_, part_, [&](int f) { u[f] = 0; });
+    for (int r = 0; r < rows_; ++r) {
+      const int c = contact(r), g = table_.guide_of[c];
       const double s = is_second(c) ? fr_.sliding[g].along : 0, across = is_second(c) ? fr_.sliding[g].across : 0;
       const double friction = fr_.sigma[g] * (m.sign[c] < 0 ? -lambda[c] : lambda[c]);
-      for (int f = 0; f < table_.free; ++f) {
+      each_in_part(source_, part_, [&](int f) {
         u[f] += lambda[c] * (N(g)[f] + (s != 0 ? s * E(g)[f] : 0)) +
                 friction * (fr_.T[g][f] - (across != 0 ? across * fr_.E[g][f] : 0));
-      }
+      });
     }
-    for (int i = 0; i < count_; ++i) add_scaled(source_, fr_.stiction[set_[i]], T_[set_[i]], u);
+    for (int i = 0; i < count_; ++i) add_scaled(source_, part_, fr_.stiction[set_[i]], T_[set_[i]], u);
   }
 
   const Source& source_;
   const Tables<Size>& table_;
+  const int part_, first_row_, rows_;  ///< the part, and its rough contacts
   Friction<Size>& fr_;
-  Problem<Size>& sliding_;
+  Problem<Source>& sliding_;
 
   int set_[n_guides], count_ = 0;
   double T_[n_guides][n_free];    ///< T^
@@ -243,7 +251,7 @@ class RestEquations {
   double coefficient_[n_guides];  ///< mu_static, or mu of those that leave
   double known_[n_guides] = {};   ///< friction that is not an unknown, N
 
-  Basis<Source, at_least_one(Size::contacts + Size::guides)> basis_{source_};
+  Basis<Source, at_least_one(most_rows<Source>() + most_guides<Source>())> basis_{source_};
   int contact_rows_ = 0;
 
   int bound_[n_guides], bound_count_ = 0;  ///< guides whose friction is an unknown

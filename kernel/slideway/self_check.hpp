@@ -64,17 +64,19 @@ SLIDEWAY_INLINE void resolve(const Source& source, const Reaction<Size>& r, Work
     });
     for_each<Source, 2>(source.scene.guide[g].contacts, [&](int i) SLIDEWAY_FOLD {
       const int c = table.first_contact[g] + i;
-      w.scale += fr.norm[table.row_of[c]] * std::fabs(r.lambda[c]);
+      w.scale += fr.norm[c] * std::fabs(r.lambda[c]);
     });
   });
   if (table.ideal == 0) return;
   constexpr int capacity = Friction<Size>::ideal;
-  for_each<Source, capacity>(table.ideal,
-                             [&](int i) SLIDEWAY_FOLD { w.pi[i] = fr.e[i] - inner(source, fr.Q[i], w.u); });
-  for_each<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD { add_scaled(source, w.pi[i], fr.Q[i], w.u); });
+  for_each<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD {
+    w.pi[i] = fr.e[i] - inner(source, table.part_of_ideal[i], fr.Q[i], w.u);
+  });
+  for_each<Source, capacity>(
+      table.ideal, [&](int i) SLIDEWAY_FOLD { add_scaled(source, table.part_of_ideal[i], w.pi[i], fr.Q[i], w.u); });
   for_each_down<Source, capacity>(table.ideal, [&](int i) SLIDEWAY_FOLD {
     w.pi[i] /= fr.R[i][i];
-    for_each<Source, capacity>(i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
+    each_ideal_before(source, i, [&](int m) SLIDEWAY_FOLD { w.pi[m] -= fr.R[i][m] * w.pi[i]; });
     w.scale += fr.ideal_norm[i] * std::fabs(w.pi[i]);
   });
 }
@@ -193,13 +195,12 @@ SLIDEWAY_INLINE double check_guide(const Source& source, const Friction<Size>& f
   Vec2 relative = free_acceleration(source, balance, slider, s.on_slider);
   if (rail != ground) relative = relative - free_acceleration(source, balance, rail, s.on_rail);
   const double accelerated = dot(s.n, relative);
-  const int m = table.row_of[c];
-  const double* norm = rough ? fr.norm : fr.ideal_norm;
-  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + norm[m] * scale + tiny);
+  const double* norm = rough ? fr.norm + c : fr.ideal_norm + table.row_of[c];
+  double residual = std::fabs(accelerated - fr.target[c]) / (std::fabs(fr.target[c]) + norm[0] * scale + tiny);
   if (two) {
     const double turning = rail == ground ? balance.alpha[slider] : balance.alpha[slider] - balance.alpha[rail];
     residual += std::fabs(accelerated + s.along * turning - fr.target[c + 1]) /
-                (std::fabs(fr.target[c + 1]) + norm[m + 1] * scale + tiny);
+                (std::fabs(fr.target[c + 1]) + norm[1] * scale + tiny);
   }
   return residual;
 }

@@ -37,7 +37,7 @@ struct Link {
   Index columns = 0;  ///< coordinates that move a or b, not both alike
   Index column[at_least_one(Size::coordinates)] = {};
   Index side[at_least_one(Size::coordinates)] = {};  ///< +1 moves a, -1 moves b
-  Index fills = 0;                                   ///< free coordinates that the row reaches in the mass metric
+  Index fills = 0;  ///< free coordinates that the row reaches in the mass metric, clear of the ideal rows
   Index fill[at_least_one(Size::coordinates)] = {};
   bool filled[at_least_one(Size::coordinates)] = {};
 };
@@ -46,7 +46,8 @@ struct Link {
 template <class Size>
 struct Tables {
   static constexpr int n_bodies = at_least_one(Size::bodies), n_coordinates = at_least_one(Size::coordinates),
-                       n_guides = at_least_one(Size::guides), n_contacts = at_least_one(Size::contacts);
+                       n_guides = at_least_one(Size::guides), n_contacts = at_least_one(Size::contacts),
+                       n_ideal = at_least_one(2 * Size::pins + Size::contacts);
 
   // coordinates, body by body; the free ones (no drive on them) have a number of their own
   Index coordinates = 0, free = 0;
@@ -61,17 +62,26 @@ struct Tables {
   Index up[n_coordinates][n_coordinates] = {};
 
   // contacts, guide by guide; those of rough guides (mu_static > 0 or preload > 0: they can stick) are the unknowns of
-  // the HLCP, the others are ideal rows
+  // the HLCPs, the others are ideal rows
   Index contacts = 0, rough = 0, ideal = 0;  ///< ideal rows: two a pin, then one a contact of a guide that is not rough
   Index first_contact[n_guides] = {};
   Index guide_of[n_contacts] = {};
-  Index row_of[n_contacts] = {};  ///< among the rough contacts, or among the ideal rows; one after another in a guide
-  Index rough_contact[n_contacts] = {};
+  Index row_of[n_contacts] = {};  ///< in its part's HLCP, or among the ideal rows; one after another in a guide
+  Index rough_contact[n_contacts] = {};  ///< part by part
   bool is_rough[n_guides] = {};
   bool is_steady[n_guides] = {};  ///< has friction that does not follow its load: viscous or preload
   Index steady = 0;               ///< such guides
   Link<Size> guide[n_guides] = {};
   Link<Size> pin[at_least_one(Size::pins)] = {};
+
+  // parts: free coordinates that links tie together, and the guides on them. Rows of two parts share no coordinate, so
+  // they are orthogonal in the mass metric, and every part has an HLCP of its own.
+  Index parts = 0, most_rows = 0, most_guides = 0;  ///< rough contacts and rough guides of the largest part
+  Index part_of[n_coordinates] = {};                ///< of a free coordinate
+  Index part_of_ideal[n_ideal] = {};                ///< of an ideal row
+  Index first_in_part[n_coordinates + 1] = {}, in_part[n_coordinates] = {};    ///< free coordinates, part by part
+  Index first_guide[n_coordinates + 1] = {}, rough_guide[n_guides] = {};       ///< rough guides, part by part
+  Index first_row[n_coordinates + 1] = {};                                     ///< into rough_contact
 
   // structural zeros
   Axes at[n_bodies] = {}, com[n_bodies] = {};
@@ -161,9 +171,8 @@ constexpr Link<Size> link(const Scene<Size>& scene, const Tables<Size>& t, int a
       l.column[l.columns] = static_cast<Index>(j);
       l.side[l.columns++] = moves_a ? 1 : -1;
     }
-    // With ideal rows to be orthogonal to, every row reaches every free coordinate.
     const int f = t.free_of[j];
-    if (f != none && (moves_a || moves_b || t.ideal > 0)) {
+    if (f != none && (moves_a || moves_b)) {
       l.filled[f] = true;
       l.fill[l.fills++] = static_cast<Index>(f);
     }
@@ -182,11 +191,10 @@ constexpr void derive_links(const Scene<Size>& scene, Tables<Size>& t) noexcept 
     for (int c = 0; c < scene.guide[g].contacts; ++c) {
       const Index k = t.contacts++;
       t.guide_of[k] = static_cast<Index>(g);
-      t.row_of[k] = t.is_rough[g] ? t.rough : t.ideal;
       if (t.is_rough[g]) {
-        t.rough_contact[t.rough++] = k;
+        ++t.rough;
       } else {
-        ++t.ideal;
+        t.row_of[k] = t.ideal++;
       }
     }
   }
@@ -202,6 +210,86 @@ constexpr void derive_links(const Scene<Size>& scene, Tables<Size>& t) noexcept 
     }
   }
   for (int p = 0; p < scene.pins; ++p) t.pin[p] = link(scene, t, scene.pin[p].a, scene.pin[p].b);
+}
+
+/// Which free coordinates links tie together: the least of them names all.
+template <class Size>
+constexpr void tie(const Link<Size>& l, Index free, Index* name) noexcept {
+  for (int e = 1; e < l.fills; ++e) {
+    const Index a = name[l.fill[0]], b = name[l.fill[e]];
+    for (int f = 0; f < free; ++f) {
+      if (name[f] == a || name[f] == b) name[f] = a < b ? a : b;
+    }
+  }
+}
+
+/// With ideal rows to be clear of, a row reaches every coordinate of its part.
+template <class Size>
+constexpr void fill_part(const Tables<Size>& t, const bool* has_ideal, Link<Size>& l) noexcept {
+  if (l.fills == 0) return;
+  const int part = t.part_of[l.fill[0]];
+  if (!has_ideal[part]) return;
+  l.fills = 0;
+  for (int i = t.first_in_part[part]; i < t.first_in_part[part + 1]; ++i) {
+    l.filled[t.in_part[i]] = true;
+    l.fill[l.fills++] = t.in_part[i];
+  }
+}
+
+/// A link that reaches no free coordinate counts to the first part.
+template <class Size>
+constexpr Index part_of(const Tables<Size>& t, const Link<Size>& l) noexcept {
+  return l.fills == 0 ? Index{0} : t.part_of[l.fill[0]];
+}
+
+template <class Size>
+constexpr void derive_parts(const Scene<Size>& scene, Tables<Size>& t) noexcept {
+  constexpr int n = Tables<Size>::n_coordinates;
+  Index name[n] = {};
+  for (int f = 0; f < t.free; ++f) name[f] = static_cast<Index>(f);
+  for (int g = 0; g < scene.guides; ++g) tie(t.guide[g], t.free, name);
+  for (int p = 0; p < scene.pins; ++p) tie(t.pin[p], t.free, name);
+  for (int f = 0; f < t.free; ++f) t.part_of[f] = name[f] == f ? t.parts++ : t.part_of[name[f]];
+  if (t.parts == 0) t.parts = 1;
+
+  bool has_ideal[n] = {};
+  for (int p = 0; p < scene.pins; ++p) {
+    t.part_of_ideal[2 * p] = t.part_of_ideal[2 * p + 1] = part_of(t, t.pin[p]);
+    has_ideal[part_of(t, t.pin[p])] = true;
+  }
+  for (int g = 0; g < scene.guides; ++g) {
+    if (t.is_rough[g]) continue;
+    for (int c = 0; c < scene.guide[g].contacts; ++c) {
+      t.part_of_ideal[t.row_of[t.first_contact[g] + c]] = part_of(t, t.guide[g]);
+    }
+    has_ideal[part_of(t, t.guide[g])] = true;
+  }
+  Index coordinates = 0, guides = 0, rows = 0;
+  for (int part = 0; part < t.parts; ++part) {
+    t.first_in_part[part] = coordinates;
+    t.first_guide[part] = guides;
+    t.first_row[part] = rows;
+    for (int f = 0; f < t.free; ++f) {
+      if (t.part_of[f] == part) t.in_part[coordinates++] = static_cast<Index>(f);
+    }
+    for (int g = 0; g < scene.guides; ++g) {
+      if (!t.is_rough[g] || part_of(t, t.guide[g]) != part) continue;
+      t.rough_guide[guides++] = static_cast<Index>(g);
+      for (int c = 0; c < scene.guide[g].contacts; ++c) {
+        t.row_of[t.first_contact[g] + c] = static_cast<Index>(rows - t.first_row[part]);
+        t.rough_contact[rows++] = static_cast<Index>(t.first_contact[g] + c);
+      }
+    }
+    t.first_in_part[part + 1] = coordinates;
+    t.first_guide[part + 1] = guides;
+    t.first_row[part + 1] = rows;
+    const Index most_rows = static_cast<Index>(rows - t.first_row[part]);
+    const Index most_guides = static_cast<Index>(guides - t.first_guide[part]);
+    t.most_rows = most_rows > t.most_rows ? most_rows : t.most_rows;
+    t.most_guides = most_guides > t.most_guides ? most_guides : t.most_guides;
+  }
+  for (int g = 0; g < scene.guides; ++g) fill_part(t, has_ideal, t.guide[g]);
+  for (int p = 0; p < scene.pins; ++p) fill_part(t, has_ideal, t.pin[p]);
 }
 
 template <class Size>
@@ -290,6 +378,7 @@ constexpr Tables<Size> derive(const Scene<Size>& scene) noexcept {
   detail::derive_coordinates(scene, t);
   detail::derive_ups(scene, t);
   detail::derive_links(scene, t);
+  detail::derive_parts(scene, t);
   detail::derive_zeros(scene, t);
   t.length = detail::largest_distance(scene);
   return t;
