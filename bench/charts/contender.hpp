@@ -31,9 +31,6 @@ class Contender {
 
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 
-/// The kernel's methods that apply to the scene, at steps that divide `interval`, from `coarsest` down.
-void add_kernel(const RunScene& scene, double interval, double coarsest, Contenders& contenders);
-
 /// SUNDIALS: Adams, BDF and explicit Runge-Kutta methods on regularised friction of several widths, and on modes with
 /// root finding; IDA on both. Nothing where it was not found when this was built: see has_sundials.
 void add_sundials(const RunScene& scene, Contenders& contenders);

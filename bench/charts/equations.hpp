@@ -48,6 +48,9 @@ class ModalEquations {
   bool pass(double t, const double* q, double* v, const int* zero);
   bool forces(double t, const double* q, const double* v, double* lambda);
 
+  const Modes<Size>& modes() const { return modes_; }
+  /// Contact, or Size::contacts + guide, of a function.
+  int watched(int function) const { return watched_[function]; }
   int coordinates() const { return stepper_.source.tables.coordinates; }
   int contacts() const { return stepper_.source.tables.contacts; }
   long evaluations() const { return evaluations_; }

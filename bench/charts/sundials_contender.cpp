@@ -22,6 +22,8 @@ void add_sundials(const RunScene&, Contenders&) {}
 #include <memory>
 #include <sundials/sundials_context.hpp>
 
+#include "cartesian.hpp"
+
 namespace slideway::charts {
 
 const bool has_sundials = true;
@@ -30,34 +32,36 @@ namespace {
 
 enum class Solver { adams, bdf, runge_kutta };
 
-/// What is integrated: y = (q, v).
+/// What is integrated: y = (positions, speeds), n each.
 class Motion {
  public:
   virtual ~Motion() = default;
-  virtual bool begin(double* y) = 0;
+  /// y of the start, from joint coordinates.
+  virtual bool begin(const double* q, const double* v, double* y) = 0;
   virtual bool rates(double t, const double* y, double* dy) = 0;
   virtual int functions() const { return 0; }
   virtual bool values(double, const double*, double*) { return true; }
   virtual bool pass(double, double*, const int*) { return true; }
-  virtual bool forces(double t, const double* y, double* lambda) = 0;
+  virtual bool look(double t, const double* y, double* q, double* lambda) = 0;
   virtual long evaluations() const = 0;
-  int n = 0;  ///< coordinates
-  int contacts = 0;
+  int n = 0;
 };
 
 class Regularised final : public Motion {
  public:
-  Regularised(const RunScene& scene, double width) : equations_(scene, width) {
-    n = equations_.coordinates();
-    contacts = equations_.contacts();
+  Regularised(const RunScene& scene, double width) : equations_(scene, width) { n = equations_.coordinates(); }
+  bool begin(const double* q, const double* v, double* y) override {
+    std::copy_n(q, n, y);
+    std::copy_n(v, n, y + n);
+    return true;
   }
-  bool begin(double*) override { return true; }
   bool rates(double t, const double* y, double* dy) override {
     std::copy(y + n, y + 2 * n, dy);
     return equations_.accelerate(t, y, y + n, dy + n);
   }
-  bool forces(double t, const double* y, double* lambda) override {
+  bool look(double t, const double* y, double* q, double* lambda) override {
     double acceleration[Size::coordinates];
+    std::copy_n(y, n, q);
     return equations_.accelerate(t, y, y + n, acceleration, lambda);
   }
   long evaluations() const override { return equations_.evaluations(); }
@@ -68,11 +72,12 @@ class Regularised final : public Motion {
 
 class Modal final : public Motion {
  public:
-  explicit Modal(const RunScene& scene) : equations_(scene) {
-    n = equations_.coordinates();
-    contacts = equations_.contacts();
+  explicit Modal(const RunScene& scene) : equations_(scene) { n = equations_.coordinates(); }
+  bool begin(const double* q, const double* v, double* y) override {
+    std::copy_n(q, n, y);
+    std::copy_n(v, n, y + n);
+    return equations_.begin(0, y, y + n);
   }
-  bool begin(double* y) override { return equations_.begin(0, y, y + n); }
   bool rates(double t, const double* y, double* dy) override {
     std::copy(y + n, y + 2 * n, dy);
     return equations_.accelerate(t, y, y + n, dy + n);
@@ -80,11 +85,118 @@ class Modal final : public Motion {
   int functions() const override { return equations_.functions(); }
   bool values(double t, const double* y, double* value) override { return equations_.values(t, y, y + n, value); }
   bool pass(double t, double* y, const int* zero) override { return equations_.pass(t, y, y + n, zero); }
-  bool forces(double t, const double* y, double* lambda) override { return equations_.forces(t, y, y + n, lambda); }
+  bool look(double t, const double* y, double* q, double* lambda) override {
+    std::copy_n(y, n, q);
+    return equations_.forces(t, y, y + n, lambda);
+  }
   long evaluations() const override { return equations_.evaluations(); }
 
  private:
   ModalEquations equations_;
+};
+
+/// y = (x, y, angle body by body; their rates).
+class Cartesian : public Motion {
+ public:
+  explicit Cartesian(const RunScene& scene) : scene_(scene), equations_(scene), contacts_(contacts(scene)) {
+    n = 3 * scene.bodies;
+    for (signed char& s : sign_) s = 1;
+  }
+  bool begin(const double* q, const double* v, double* y) override {
+    equations_.from_joints(q, v, y, y + n);
+    return true;
+  }
+  bool look(double t, const double* y, double* q, double* lambda) override {
+    double v[Size::coordinates], dy[6 * Size::bodies];
+    equations_.to_joints(y, y + n, q, v);
+    if (!rates(t, y, dy)) return false;
+    for (int c = 0; c < contacts_; ++c) lambda[c] = equations_.lambda(c);
+    return true;
+  }
+  long evaluations() const override { return evaluations_; }
+
+ protected:
+  const RunScene& scene_;
+  CartesianEquations equations_;
+  int contacts_;
+  signed char sign_[Size::contacts];
+  long evaluations_ = 0;
+};
+
+class CartesianRegularised final : public Cartesian {
+ public:
+  CartesianRegularised(const RunScene& scene, double width) : Cartesian(scene), width_(width) {}
+  bool rates(double t, const double* y, double* dy) override {
+    ++evaluations_;
+    GuideFriction friction[Size::guides];
+    for (int g = 0; g < scene_.guides; ++g) {
+      friction[g].per_force = -scene_.guide[g].mu * std::tanh(equations_.slip(g, y, y + n) / width_);
+    }
+    std::copy(y + n, y + 2 * n, dy);
+    return equations_.accelerate(t, y, y + n, friction, sign_, false, dy + n);
+  }
+
+ private:
+  double width_;
+};
+
+/// Which mode comes next is decided as Modal does.
+class CartesianModal final : public Cartesian {
+ public:
+  explicit CartesianModal(const RunScene& scene) : Cartesian(scene), modal_(scene) {}
+  bool begin(const double* q, const double* v, double* y) override {
+    double speed[Size::coordinates];
+    std::copy_n(v, modal_.coordinates(), speed);
+    return modal_.begin(0, q, speed) && Cartesian::begin(q, speed, y);
+  }
+  bool rates(double t, const double* y, double* dy) override {
+    std::copy(y + n, y + 2 * n, dy);
+    return solve(t, y, dy + n);
+  }
+  int functions() const override { return modal_.functions(); }
+  bool values(double t, const double* y, double* value) override {
+    double acceleration[3 * Size::bodies];
+    if (!solve(t, y, acceleration)) return false;
+    const Modes<Size>& m = modal_.modes();
+    for (int k = 0; k < functions(); ++k) {
+      const int i = modal_.watched(k), g = i - Size::contacts;
+      if (i < Size::contacts) {
+        value[k] = m.sign[i] * equations_.lambda(i);
+      } else if (m.mode[g] != 0) {
+        value[k] = m.mode[g] * equations_.slip(g, y, y + n);
+      } else {
+        value[k] = limit_left(g);
+      }
+    }
+    return true;
+  }
+  bool pass(double t, double* y, const int* zero) override {
+    double q[Size::coordinates], v[Size::coordinates];
+    equations_.to_joints(y, y + n, q, v);
+    return modal_.pass(t, q, v, zero) && Cartesian::begin(q, v, y);
+  }
+
+ private:
+  bool solve(double t, const double* y, double* acceleration) {
+    ++evaluations_;
+    const Modes<Size>& m = modal_.modes();
+    GuideFriction friction[Size::guides];
+    for (int g = 0; g < scene_.guides; ++g) {
+      friction[g] = {-m.mode[g] * scene_.guide[g].mu, m.mode[g] == 0 && scene_.guide[g].mu_static > 0};
+    }
+    std::copy_n(m.sign, contacts_, sign_);
+    return equations_.accelerate(t, y, y + n, friction, sign_, true, acceleration);
+  }
+  double limit_left(int g) const {
+    const Guide& guide = scene_.guide[g];
+    int c = 0;
+    for (int o = 0; o < g; ++o) c += scene_.guide[o].contacts;
+    double limit = guide.preload;
+    for (int k = 0; k < guide.contacts; ++k) limit += guide.mu_static * sign_[c + k] * equations_.lambda(c + k);
+    return limit - std::fabs(equations_.held_force(g));
+  }
+
+  ModalEquations modal_;
 };
 
 int rates(realtype t, N_Vector y, N_Vector dy, void* self) {
@@ -188,38 +300,40 @@ constexpr const char* name_of(Solver solver) {
   return solver == Solver::adams ? "CVODE Adams" : solver == Solver::bdf ? "CVODE BDF" : "ARKODE explicit, order 8";
 }
 
+struct Choice {
+  Solver solver;
+  double width;  ///< of tanh, m/s; 0: modes with root finding
+  bool lent;     ///< slideway's equations instead of a user's own
+};
+
 class Sundials final : public Contender {
  public:
-  /// width 0: modes with root finding.
-  Sundials(const RunScene& scene, Solver solver, double width) : scene_(scene), solver_(solver), width_(width) {
-    family = width > 0 ? "SUNDIALS, friction regularised" : "SUNDIALS, root finding on modes";
-    name = width > 0 ? fmt::format("{}, tanh(v / {:g} m/s)", name_of(solver), width) : name_of(solver);
+  Sundials(const RunScene& scene, Choice choice) : scene_(scene), choice_(choice) {
+    const bool modes = choice.width == 0;
+    family = fmt::format("SUNDIALS, {}{}", modes ? "root finding on modes" : "friction regularised",
+                         choice.lent ? ", slideway's equations" : "");
+    name = modes ? name_of(choice.solver) : fmt::format("{}, tanh(v / {:g} m/s)", name_of(choice.solver), choice.width);
     setting = "tolerance";
     for (int k = 4; k <= 26; ++k) settings.push_back(std::pow(10, -k / 2.0));
   }
 
   Outcome run(const std::vector<double>& times, double tolerance) const override {
-    std::unique_ptr<Motion> motion;
-    if (width_ > 0) {
-      motion = std::make_unique<Regularised>(scene_, width_);
-    } else {
-      motion = std::make_unique<Modal>(scene_);
-    }
+    const auto motion = make_motion();
     const io::RunStepper stepper(scene_);
     const auto start = stepper.start();
-    std::vector<double> y(start.q, start.q + motion->n);
-    y.insert(y.end(), start.v, start.v + motion->n);
+    std::vector<double> y(2 * static_cast<std::size_t>(motion->n));
     Outcome outcome;
     const auto fail = [&](const char* why) {
       outcome.failure = why;
       outcome.evaluations = motion->evaluations();
       return outcome;
     };
-    if (!motion->begin(y.data())) return fail("no start");
-    Integrator integrator(solver_, *motion, tolerance, y);
+    if (!motion->begin(start.q, start.v, y.data())) return fail("no start");
+    Integrator integrator(choice_.solver, *motion, tolerance, y);
     double t = 0;
     std::vector<int> zero;
     int events = 0;
+    const int coordinates = stepper.source.tables.coordinates, contacts = stepper.source.tables.contacts;
     for (const double end : times) {
       while (t < end) {
         bool event = false;
@@ -229,10 +343,11 @@ class Sundials final : public Contender {
         if (!motion->pass(t, integrator.data(), zero.data())) return fail("no mode after an event");
         if (!integrator.restart(t)) return fail("no restart");
       }
-      const double* now = integrator.data();
-      outcome.q.emplace_back(now, now + motion->n);
-      outcome.lambda.emplace_back(motion->contacts);
-      if (!motion->forces(t, now, outcome.lambda.back().data())) return fail("no forces");
+      outcome.q.emplace_back(coordinates);
+      outcome.lambda.emplace_back(contacts);
+      if (!motion->look(t, integrator.data(), outcome.q.back().data(), outcome.lambda.back().data())) {
+        return fail("no forces");
+      }
     }
     outcome.evaluations = motion->evaluations();
     return outcome;
@@ -240,9 +355,18 @@ class Sundials final : public Contender {
 
  private:
   static constexpr int most_events = 10000;
+
+  std::unique_ptr<Motion> make_motion() const {
+    if (choice_.width == 0) {
+      if (choice_.lent) return std::make_unique<Modal>(scene_);
+      return std::make_unique<CartesianModal>(scene_);
+    }
+    if (choice_.lent) return std::make_unique<Regularised>(scene_, choice_.width);
+    return std::make_unique<CartesianRegularised>(scene_, choice_.width);
+  }
+
   const RunScene& scene_;
-  Solver solver_;
-  double width_;
+  Choice choice_;
 };
 
 }  // namespace
@@ -250,10 +374,12 @@ class Sundials final : public Contender {
 void add_sundials(const RunScene& scene, Contenders& contenders) {
   bool rough = false;
   for (int g = 0; g < scene.guides; ++g) rough = rough || scene.guide[g].mu_static > 0;
-  for (const Solver solver : {Solver::adams, Solver::bdf, Solver::runge_kutta}) {
-    contenders.push_back(std::make_unique<Sundials>(scene, solver, 0));
-    for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-      if (rough) contenders.push_back(std::make_unique<Sundials>(scene, solver, width));
+  for (const bool lent : {false, true}) {
+    for (const Solver solver : {Solver::adams, Solver::bdf, Solver::runge_kutta}) {
+      contenders.push_back(std::make_unique<Sundials>(scene, Choice{solver, 0, lent}));
+      for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+        if (rough) contenders.push_back(std::make_unique<Sundials>(scene, Choice{solver, width, lent}));
+      }
     }
   }
 }

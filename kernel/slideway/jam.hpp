@@ -163,7 +163,7 @@ class JammedGuides : public RestEquations<Source> {
   template <class F>
   void each_condition(const Modes<Size>& m, const double (*x)[order], const int* parameter, int parameters, double size,
                       F&& f) noexcept {
-    double row[n_guides + 1];
+    double row[n_guides + 1] = {};
     for (int r = 0; r < rows_; ++r) {
       for (int p = 0; p <= parameters; ++p) row[p] = m.sign[contact(r)] < 0 ? -x[p][r] : x[p][r];
       f(row, 0.0);

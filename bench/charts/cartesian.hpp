@@ -1,0 +1,60 @@
+// Equations of motion as a user of a general integrator writes them: x, y and angle of every body, one row for each
+// constraint, and one dense system for accelerations and constraint forces, by Eigen (Haug, Computer Aided Kinematics
+// and Dynamics of Mechanical Systems, 1989). Baumgarte's terms hold the constraints.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "equations.hpp"
+
+namespace slideway::charts {
+
+/// Friction of a guide in one evaluation.
+struct GuideFriction {
+  double per_force = 0;  ///< F of each N of contact force, along the guide: -mu sgn(v), or regularised
+  bool held = false;     ///< at rest: F is an unknown, and v' = -alpha v a row
+};
+
+class CartesianEquations {
+ public:
+  explicit CartesianEquations(const RunScene& scene);
+
+  int bodies() const { return scene_.bodies; }
+  /// Places x (x, y of the origin and angle, body by body) and their rates u from joint coordinates, and back.
+  void from_joints(const double* q, const double* v, double* x, double* u) const;
+  void to_joints(const double* x, const double* u, double* q, double* v) const;
+
+  /// Sliding speed of a guide.
+  double slip(int guide, const double* x, const double* u) const;
+
+  /// Accelerations. `sign`, of the contact forces: kept if `follow`, else a first guess that is changed until the
+  /// forces have it. False where none is found.
+  bool accelerate(double t, const double* x, const double* u, const GuideFriction* friction, signed char* sign,
+                  bool follow, double* acceleration);
+  // Of the last accelerate():
+  double lambda(int contact) const { return solution_(first_contact_ + contact); }
+  double held_force(int guide) const { return solution_(held_[guide]); }
+
+ private:
+  struct Point;
+  Point point(int body, Vec2 at, const double* x, const double* u) const;
+  void constrain(const Point& a, const Point& b, Vec2 direction, bool turns, double Phi_target, double rate_target,
+                 double target, bool position);
+  void constrain_angle(int a, int b, double Phi, double rate, double target);
+  void push(int column, const Point& a, const Point& b, Vec2 force);
+  void apply(const Point& p, Vec2 force);
+  void joints(double t, const double* x, const double* u);
+  void drives(double t, const double* x, const double* u);
+  void guides(const double* x, const double* u, const GuideFriction* friction, const signed char* sign);
+  void forces(double t, const double* x, const double* u, const GuideFriction* friction);
+
+  const RunScene& scene_;
+  int row_ = 0, first_contact_ = 0;
+  int held_[Size::guides] = {};
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd right_, solution_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+};
+
+}  // namespace slideway::charts
