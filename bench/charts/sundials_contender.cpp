@@ -310,8 +310,7 @@ class Sundials final : public Contender {
  public:
   Sundials(const RunScene& scene, Choice choice) : scene_(scene), choice_(choice) {
     const bool modes = choice.width == 0;
-    family = fmt::format("SUNDIALS, {}{}", modes ? "root finding on modes" : "friction regularised",
-                         choice.lent ? ", slideway's equations" : "");
+    family = fmt::format("SUNDIALS, {}{}", modes ? "modes" : "tanh", choice.lent ? ", lent equations" : "");
     name = modes ? name_of(choice.solver) : fmt::format("{}, tanh(v / {:g} m/s)", name_of(choice.solver), choice.width);
     setting = "tolerance";
     for (int k = 4; k <= 26; ++k) settings.push_back(std::pow(10, -k / 2.0));

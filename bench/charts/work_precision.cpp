@@ -27,7 +27,7 @@ Style style_of(const std::string& family) {
     const int place = static_cast<int>(method);
     return {place, place, false};
   }
-  const bool modes = family.find("root") != std::string::npos, lent = family.ends_with("slideway's equations");
+  const bool modes = family.find("modes") != std::string::npos, lent = family.ends_with("lent equations");
   return {modes ? 7 : 6, lent ? 5 : 4, true};
 }
 
