@@ -188,7 +188,8 @@ int print_memory() {
   using Size = Stepper::Size;
   std::printf("state %zu, scene %zu, tables %zu, work %zu bytes\n", sizeof(Stepper::State), sizeof(crank_rocker),
               sizeof(slideway::Tables<Size>),
-              sizeof(slideway::Work<Size>) + sizeof(slideway::Problem<Size>) + sizeof(Stepper::Reaction));
+              sizeof(slideway::Work<Size>) + sizeof(slideway::Problem<slideway::CompileTime<crank_rocker>>) +
+                  sizeof(Stepper::Reaction));
   return 0;
 }
 

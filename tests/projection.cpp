@@ -39,7 +39,7 @@ template <class Basis>
 bool take(Basis& basis, const double* row, double value) {
   double* next = basis.next();
   for (int j = 0; j < 4; ++j) next[j] = row[j];
-  return basis.take(std::sqrt(dot(row, row)), value);
+  return basis.take(0, std::sqrt(dot(row, row)), value);
 }
 
 /// The change meets the first `count` rows, and is one of their combinations: the shortest that does.

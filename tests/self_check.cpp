@@ -38,7 +38,7 @@ struct Instant {
   Block source = leaning_block();
   slideway::Work<BlockSize> w{};
   slideway::Reaction<BlockSize> r{};
-  slideway::Problem<BlockSize> hlcp{};
+  slideway::Problem<Block> hlcp{};
 
   Instant() {
     const slideway::Body& body = source.scene.body[0];
@@ -51,7 +51,8 @@ struct Instant {
     apply_steady_friction(source, mode, w.friction, w.dynamics);
     gather(source, w.kinematics, w.dynamics);
     EXPECT_TRUE(factor_mass(source, w.kinematics, body.q, body.v, w.dynamics));
-    EXPECT_TRUE(assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r, hlcp));
+    EXPECT_TRUE(assemble(source, w.kinematics, w.dynamics, solving.gains, mode, w.friction, r));
+    EXPECT_TRUE(assemble_part(source, w.kinematics, w.dynamics, 0, w.friction, hlcp));
   }
 
   /// With these contact forces, and the accelerations that they give.

@@ -248,8 +248,8 @@ void CartesianEquations::forces(double, const double* x, const double* u, const 
     const Vec2 gap = a.place - b.place;
     const double length = std::sqrt(dot(gap, gap));
     const Vec2 along = length > 0 ? (1 / length) * gap : Vec2{};
-    const double force = -spring.stiffness * (length - spring.length) -
-                         spring.damping * dot(along, a.velocity - b.velocity);
+    const double force =
+        -spring.stiffness * (length - spring.length) - spring.damping * dot(along, a.velocity - b.velocity);
     apply(a, force * along);
     apply(b, -force * along);
   }

@@ -12,9 +12,9 @@ namespace slideway::charts {
 
 /// What a run came to at the times asked for.
 struct Outcome {
-  std::string failure;                          ///< empty: it went through
+  std::string failure;                         ///< empty: it went through
   std::vector<std::vector<double>> q, lambda;  ///< by time; the joints' coordinates, the contact forces
-  long evaluations = 0;                         ///< of accelerations
+  long evaluations = 0;                        ///< of accelerations
 };
 
 class Contender {

@@ -71,7 +71,8 @@ void draw(const EmbeddedScene& embedded, const Options& options) {
     if (!row.contains("method")) continue;
     fmt::print("{:22s} {:7.0e} {:15s} {:10.0f} ns/s", embedded.name, row["error"].get<double>(),
                row["method"].get<std::string>(), row["ns_per_second"].get<double>());
-    for (const auto& [family, peer] : row["times_dearer"].items()) fmt::print(" | {:.1f} x {}", peer["ratio"].get<double>(), family);
+    for (const auto& [family, peer] : row["times_dearer"].items())
+      fmt::print(" | {:.1f} x {}", peer["ratio"].get<double>(), family);
     fmt::print("\n");
   }
 }

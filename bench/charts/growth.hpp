@@ -11,10 +11,10 @@ namespace slideway::charts {
 struct Growth {
   std::string family;  ///< "driven crank", ...
   int sliders;
-  double ns;           ///< of an rk4 step, warm: median
-  double low, high;    ///< least and most of the repetitions
-  int parts, rows;     ///< HLCPs and rough contacts of the largest
-  std::size_t bytes;   ///< of scene, tables and state, in room for exactly this many sliders
+  double ns;          ///< of an rk4 step, warm: median
+  double low, high;   ///< least and most of the repetitions
+  int parts, rows;    ///< HLCPs and rough contacts of the largest
+  std::size_t bytes;  ///< of scene, tables and state, in room for exactly this many sliders
 };
 
 std::vector<Growth> measure_growth(int repetitions, const std::function<void(double, const std::string&)>& progress);

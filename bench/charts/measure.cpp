@@ -111,9 +111,14 @@ std::vector<Measured> measure(const Contenders& contenders, const oracle::Refere
   }
   benchmark::ClearRegisteredBenchmarks();
   for (const auto& [name, m] : timed) {
-    benchmark::RegisterBenchmark(name.c_str(), [m = m, &truth](benchmark::State& state) {
-      for (auto _ : state) benchmark::DoNotOptimize(m->contender->run(truth.times, m->setting));
-    })->UseRealTime()->MinTime(0.01)->Repetitions(options.repetitions);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [m = m, &truth](benchmark::State& state) {
+                                   for (auto _ : state)
+                                     benchmark::DoNotOptimize(m->contender->run(truth.times, m->setting));
+                                 })
+        ->UseRealTime()
+        ->MinTime(0.01)
+        ->Repetitions(options.repetitions);
   }
   char program[] = "charts", interleaved[] = "--benchmark_enable_random_interleaving=true";
   char* arguments[] = {program, interleaved, nullptr};

@@ -14,7 +14,7 @@ namespace slideway::charts {
 struct Measured {
   const Contender* contender;
   double setting;
-  std::string failure;  ///< empty: it went through
+  std::string failure;     ///< empty: it went through
   double error = 0;        ///< of positions: max |q - q_ref| over the samples, over the largest |q_ref|
   double force_error = 0;  ///< of contact forces, likewise
   long evaluations = 0;

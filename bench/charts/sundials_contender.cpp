@@ -219,8 +219,9 @@ class Integrator {
         tolerance_(tolerance),
         n_(static_cast<sunindextype>(y.size())),
         y_(N_VNew_Serial(n_, context_), N_VDestroy),
-        memory_(nullptr, solver == Solver::runge_kutta ? [](void* m) { ERKStepFree(&m); }
-                                                       : [](void* m) { CVodeFree(&m); }) {
+        memory_(
+            nullptr,
+            solver == Solver::runge_kutta ? [](void* m) { ERKStepFree(&m); } : [](void* m) { CVodeFree(&m); }) {
     std::copy(y.begin(), y.end(), data());
     if (solver_ == Solver::runge_kutta) {
       memory_.reset(ERKStepCreate(rates, 0, y_.get(), context_));
@@ -287,11 +288,11 @@ class Integrator {
   double tolerance_;
   sundials::Context context_;
   sunindextype n_;
-  Owned<std::remove_pointer_t<N_Vector>> y_;
-  Owned<std::remove_pointer_t<SUNMatrix>> matrix_{nullptr, SUNMatDestroy};
-  Owned<std::remove_pointer_t<SUNLinearSolver>> linear_{nullptr, [](SUNLinearSolver s) { SUNLinSolFree(s); }};
-  Owned<std::remove_pointer_t<SUNNonlinearSolver>> fixed_point_{nullptr,
-                                                                [](SUNNonlinearSolver s) { SUNNonlinSolFree(s); }};
+  Owned<std::remove_pointer_t<N_Vector> > y_;
+  Owned<std::remove_pointer_t<SUNMatrix> > matrix_{nullptr, SUNMatDestroy};
+  Owned<std::remove_pointer_t<SUNLinearSolver> > linear_{nullptr, [](SUNLinearSolver s) { SUNLinSolFree(s); }};
+  Owned<std::remove_pointer_t<SUNNonlinearSolver> > fixed_point_{nullptr,
+                                                                 [](SUNNonlinearSolver s) { SUNNonlinSolFree(s); }};
   Owned<void> memory_;
   bool good_ = true;
 };

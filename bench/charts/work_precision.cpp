@@ -89,7 +89,9 @@ Chart time_chart(const WorkPrecision& wp) {
 }
 
 Chart evaluations_chart(const WorkPrecision& wp) {
-  const auto evaluations = [&](const Measured& m) { return static_cast<double>(m.evaluations) / wp.reference.duration; };
+  const auto evaluations = [&](const Measured& m) {
+    return static_cast<double>(m.evaluations) / wp.reference.duration;
+  };
   return chart(wp, "evaluations", "evaluations for each simulated second", "error of positions", false, evaluations,
                of_position);
 }
@@ -100,8 +102,11 @@ Chart force_chart(const WorkPrecision& wp) {
 }
 
 io::Json document(const WorkPrecision& wp) {
-  io::Json json{{"format", io::json_format}, {"scene", wp.scene.name},        {"hash", wp.scene.hash},
-                {"duration", wp.reference.duration}, {"reference_digits", std::floor(wp.reference.digits)}};
+  io::Json json{{"format", io::json_format},
+                {"scene", wp.scene.name},
+                {"hash", wp.scene.hash},
+                {"duration", wp.reference.duration},
+                {"reference_digits", std::floor(wp.reference.digits)}};
   io::Json points = io::Json::array();
   for (const Measured& m : wp.measured) {
     io::Json point{{"family", m.contender->family}, {"name", m.contender->name}, {m.contender->setting, m.setting}};
@@ -130,10 +135,11 @@ io::Json document(const WorkPrecision& wp) {
     }
     io::Json ratios = io::Json::object();
     for (const std::string& family : families(wp)) {
-      const Measured* theirs =
-          cheapest(wp.measured, [&](const Contender& c) { return !is_kernel(c) && c.family == family; }, error);
+      const Measured* theirs = cheapest(
+          wp.measured, [&](const Contender& c) { return !is_kernel(c) && c.family == family; }, error);
       if (theirs == nullptr || ours == nullptr) continue;
-      ratios[family] = {{"ratio", theirs->ns / ours->ns}, {"name", theirs->contender->name}, {"tolerance", theirs->setting}};
+      ratios[family] = {
+          {"ratio", theirs->ns / ours->ns}, {"name", theirs->contender->name}, {"tolerance", theirs->setting}};
     }
     row["times_dearer"] = std::move(ratios);
     cheapest_by_error.push_back(std::move(row));

@@ -58,8 +58,8 @@ SLIDEWAY_INLINE double state_rounding(const Source& source, const double* v, Gai
          (std::fabs(gains.beta) * table.length + std::fabs(gains.alpha) * speed);
 }
 
-/// Squared distance of the row of rough contact c, i in its problem, from that of its guide's other contact: forces of two contacts close to
-/// each other are rounding divided by that.
+/// Squared distance of the row of rough contact c, i in its problem, from that of its guide's other contact: forces of
+/// two contacts close to each other are rounding divided by that.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE double own_part(const Source& source, const Problem<Source>& hlcp, int i, int c, double norm) noexcept {
   const int g = source.tables.guide_of[c];

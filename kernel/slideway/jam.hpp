@@ -30,11 +30,11 @@ class JammedGuides : public RestEquations<Source> {
   }
 
  protected:
-  using Base::attempt, Base::build_in_mode, Base::contact, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
-      Base::normal, Base::take_guide;
-  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
-      Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::bound_, Base::bound_count_,
-      Base::size_, Base::trials_, Base::problem_, Base::trial_;
+  using Base::attempt, Base::build_in_mode, Base::contact, Base::excess, Base::excess_bound, Base::gain,
+      Base::known_force, Base::normal, Base::take_guide;
+  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_,
+      Base::lack_, Base::mobility_, Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::bound_,
+      Base::bound_count_, Base::size_, Base::trials_, Base::problem_, Base::trial_;
 
   /// Every mode of the open guides, rest first; of each, contact signs from those before on. Capped at max_solves.
   Status decide_jammed(Modes<Size>& m, Report& report) noexcept {
@@ -143,7 +143,8 @@ class JammedGuides : public RestEquations<Source> {
     return true;
   }
 
-  using Search = LeastNorm<at_least_one(most_rows<Source>() + 3 * most_guides<Source>()), at_least_one(most_guides<Source>())>;
+  using Search =
+      LeastNorm<at_least_one(most_rows<Source>() + 3 * most_guides<Source>()), at_least_one(most_guides<Source>())>;
 
   void keep(double* x) const noexcept {
     for (int r = 0; r < size_; ++r) x[r] = trial_.x[r];

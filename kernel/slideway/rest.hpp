@@ -48,12 +48,13 @@ class RestProblem : public JammedGuides<Source> {
   }
 
  private:
-  using Base::bound_of, Base::contact, Base::decide_jammed, Base::excess, Base::excess_bound, Base::gain, Base::known_force,
-      Base::normal, Base::note, Base::set_motion_row, Base::set_sigma, Base::span_contacts, Base::start_problem,
-      Base::take_guide;
-  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_, Base::lack_, Base::mobility_,
-      Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::open_, Base::open_count_, Base::size_,
-      Base::problem_, Base::roundings_, Base::fixed_, Base::dwells_, Base::jammed_, Base::options_;
+  using Base::bound_of, Base::contact, Base::decide_jammed, Base::excess, Base::excess_bound, Base::gain,
+      Base::known_force, Base::normal, Base::note, Base::set_motion_row, Base::set_sigma, Base::span_contacts,
+      Base::start_problem, Base::take_guide;
+  using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_,
+      Base::lack_, Base::mobility_, Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::open_,
+      Base::open_count_, Base::size_, Base::problem_, Base::roundings_, Base::fixed_, Base::dwells_, Base::jammed_,
+      Base::options_;
 
   /// Guides whose motion friction cannot change: they slide as v' says, or dwell. And whether the others' rows depend
   /// on each other.
@@ -184,7 +185,8 @@ class RestProblem : public JammedGuides<Source> {
     bool turned = false;
     for (int i = 0; i < count_; ++i) {
       const int g = set_[i];
-      if (candidate_[g] == 0 || fixed_[g] || m.mode[g] * (inner(source_, part_, T_[g], u) - lack_[g]) >= -bound_of(g, u))
+      if (candidate_[g] == 0 || fixed_[g] ||
+          m.mode[g] * (inner(source_, part_, T_[g], u) - lack_[g]) >= -bound_of(g, u))
         continue;
       m.mode[g] = 0;
       if (!m.leaving[g]) coefficient_[g] = source_.scene.guide[g].mu_static;

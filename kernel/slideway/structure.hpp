@@ -47,7 +47,7 @@ template <class Size>
 struct Tables {
   static constexpr int n_bodies = at_least_one(Size::bodies), n_coordinates = at_least_one(Size::coordinates),
                        n_guides = at_least_one(Size::guides), n_contacts = at_least_one(Size::contacts),
-                       n_ideal = at_least_one(2 * Size::pins + Size::contacts);
+                       n_ideal = 2 * at_least_one(Size::pins) + Size::contacts;
 
   // coordinates, body by body; the free ones (no drive on them) have a number of their own
   Index coordinates = 0, free = 0;
@@ -66,7 +66,7 @@ struct Tables {
   Index contacts = 0, rough = 0, ideal = 0;  ///< ideal rows: two a pin, then one a contact of a guide that is not rough
   Index first_contact[n_guides] = {};
   Index guide_of[n_contacts] = {};
-  Index row_of[n_contacts] = {};  ///< in its part's HLCP, or among the ideal rows; one after another in a guide
+  Index row_of[n_contacts] = {};         ///< in its part's HLCP, or among the ideal rows; one after another in a guide
   Index rough_contact[n_contacts] = {};  ///< part by part
   bool is_rough[n_guides] = {};
   bool is_steady[n_guides] = {};  ///< has friction that does not follow its load: viscous or preload
@@ -79,9 +79,9 @@ struct Tables {
   Index parts = 0, most_rows = 0, most_guides = 0;  ///< rough contacts and rough guides of the largest part
   Index part_of[n_coordinates] = {};                ///< of a free coordinate
   Index part_of_ideal[n_ideal] = {};                ///< of an ideal row
-  Index first_in_part[n_coordinates + 1] = {}, in_part[n_coordinates] = {};    ///< free coordinates, part by part
-  Index first_guide[n_coordinates + 1] = {}, rough_guide[n_guides] = {};       ///< rough guides, part by part
-  Index first_row[n_coordinates + 1] = {};                                     ///< into rough_contact
+  Index first_in_part[n_coordinates + 1] = {}, in_part[n_coordinates] = {};  ///< free coordinates, part by part
+  Index first_guide[n_coordinates + 1] = {}, rough_guide[n_guides] = {};     ///< rough guides, part by part
+  Index first_row[n_coordinates + 1] = {};                                   ///< into rough_contact
 
   // structural zeros
   Axes at[n_bodies] = {}, com[n_bodies] = {};
