@@ -11,7 +11,7 @@ using slideway::Scene;
 
 // --- Basis -----------------------------------------------------------------------------------------------------------
 
-/// Four coordinates, each of its own body of 1 kg.
+/// Four coordinates, each of its own body of 1 kg, in one part.
 using FourSize = slideway::Size<4, 4, 0, 0, 2, 0, 0, 0, 0, 0>;
 using Four = slideway::RunTime<FourSize>;
 
@@ -22,7 +22,9 @@ Four four_coordinates() {
     scene.body[i].joint = Joint::prismatic;
     scene.body[i].mass = 1;
   }
-  return Four(scene);
+  Four four(scene);
+  four.tables.first_in_part[1] = 4;
+  return four;
 }
 
 constexpr double rows[3][4] = {{1, 2, 0, 2}, {3, 1, 1, 0}, {1, -1, 4, 2}};

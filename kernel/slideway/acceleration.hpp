@@ -209,8 +209,12 @@ template <class Source, class Size = typename Source::Size>
   });
   problem.allow(4 * slack, state_rounding(source, at.v, solving.gains));
   if (at.aim != Aim::follow) {
+    const Uniqueness others = report.uniqueness;  // of the parts before
+    report.uniqueness = Uniqueness::certified;
     const Status status = problem.decide(m, report);
-    if (status != Status::ok || report.uniqueness == Uniqueness::refuted) {
+    const bool refuted = report.uniqueness == Uniqueness::refuted;
+    report.uniqueness = weaker(report.uniqueness, others);
+    if (status != Status::ok || refuted) {
       bool named = false;
       each_guide_in_part(source, part, [&](int g) {
         if (rests[g] && !named) report.guide = g;
@@ -298,7 +302,8 @@ SLIDEWAY_INLINE Status press(const Source& source, int part, Aim aim, const Solv
     report.solves = report.solves > answer.solves ? report.solves : answer.solves;
     report.uniqueness = weaker(report.uniqueness, answer.uniqueness);
     if (answer.uniqueness == Uniqueness::refuted || answer.status == Status::no_solution) {
-      if (report.guide == none) report.guide = guide_to_blame(source, part, hlcp);
+      const bool outweighs = report.guide == none || answer.status == Status::no_solution;
+      if (outweighs) report.guide = guide_to_blame(source, part, hlcp);
     }
     if (answer.status != Status::ok) {
       return independent_contacts(hlcp, rows) ? answer.status : Status::singular_constraints;
@@ -359,8 +364,11 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD { signs[c] = m.sign[c]; });
   Status status = Status::ok;
   for_each<Source, Size::coordinates>(table.parts, [&](int part) SLIDEWAY_FOLD {
-    if (status != Status::ok || table.first_row[part] == table.first_row[part + 1]) return;
-    status = solve_part<all_slip>(source, part, at, solving, rests, w, m, r, report);
+    // Several answers of one part say nothing of the others: another may have none.
+    if (status != Status::ok && status != Status::not_unique) return;
+    if (table.first_row[part] == table.first_row[part + 1]) return;
+    const Status solved = solve_part<all_slip>(source, part, at, solving, rests, w, m, r, report);
+    if (solved != Status::ok) status = solved;
   });
   if (status != Status::ok) return status;
   resolve(source, r, w);
