@@ -252,4 +252,39 @@ Seen in_units(const MechanismScene& scene, int length, int mass, int time) {
           unit(0, 0, 1)};
 }
 
+Seen doubled(const MechanismScene& scene) {
+  MechanismScene s = scene;
+  const auto moved = [&](int body) { return body == ground ? ground : body + scene.bodies; };
+  const auto append = [](auto* items, int& count, auto change) {
+    const int once = count;
+    for (int k = 0; k < once; ++k) change(items[count++] = items[k]);
+  };
+  const auto move_both = [&](auto& item) {
+    item.a = moved(item.a);
+    item.b = moved(item.b);
+  };
+  const auto move_one = [&](auto& item) { item.body = moved(item.body); };
+  append(s.body, s.bodies, [&](Body& body) { body.parent = moved(body.parent); });
+  append(s.guide, s.guides, [&](Guide& guide) {
+    guide.slider = moved(guide.slider);
+    guide.rail = moved(guide.rail);
+  });
+  append(s.drive, s.drives, move_one);
+  append(s.pin, s.pins, move_both);
+  append(s.spring, s.springs, move_both);
+  append(s.joint_spring, s.joint_springs, move_one);
+  append(s.load, s.loads, move_one);
+  int n = 0;
+  for_each_coordinate(scene, [&](int, int, int) { ++n; });
+  return {s, [n, guides = scene.guides](const RunState& state) {
+            RunState seen = state;
+            for (int j = 0; j < n; ++j) {
+              seen.q[n + j] = state.q[j];
+              seen.v[n + j] = state.v[j];
+            }
+            for (int g = 0; g < guides; ++g) seen.mode[guides + g] = state.mode[g];
+            return seen;
+          }};
+}
+
 }  // namespace slideway::properties

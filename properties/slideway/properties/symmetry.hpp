@@ -1,5 +1,6 @@
 // What may not change a motion: the same mechanism seen in a mirror, turned, with guides read backwards, with its items
-// listed in another order, in other units. Each takes a scene to another and a state to the one that it has there.
+// listed in another order, in other units, beside another one. Each takes a scene to another and a state to the one
+// that it has there.
 #pragma once
 
 #include <functional>
@@ -26,5 +27,7 @@ Seen reordered(const MechanismScene& scene, const std::vector<int>& guides);
 /// Units of length, mass and time smaller by 2^length, 4^mass, 2^time: every number is another by a power of two, roots
 /// of masses too, and no bit of the motion.
 Seen in_units(const MechanismScene& scene, int length, int mass, int time);
+/// The mechanism twice, neither touching the other: no bit of the motion. Requires room for it.
+Seen doubled(const MechanismScene& scene);
 
 }  // namespace slideway::properties
