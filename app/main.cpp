@@ -32,6 +32,7 @@ int command(int count, char** arguments) {
   add_lint(command, status);
   add_hlcp(command, status);
   add_export(command, status);
+  add_charts(command, status);
   add_scenes(command, status);
   try {
     command.parse(count, arguments);

@@ -13,6 +13,7 @@ void add_verify(CLI::App& command, int& status);
 void add_lint(CLI::App& command, int& status);
 void add_hlcp(CLI::App& command, int& status);
 void add_export(CLI::App& command, int& status);
+void add_charts(CLI::App& command, int& status);
 void add_scenes(CLI::App& command, int& status);
 
 /// The positional SCENE and the repeatable --set.

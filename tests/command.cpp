@@ -114,6 +114,21 @@ TEST_F(Command, TellsItsVersionAndItsVerbs) {
   for (const char* verb : {"run", "lint", "export", "scenes"}) EXPECT_NE(help.out.find(verb), help.out.npos);
 }
 
+TEST_F(Command, HandsChartsToTheProgramBesideIt) {
+  fs::copy(SLIDEWAY_COMMAND, tmp / "slideway");
+  const Result alone = shell("PATH=/nowhere ./slideway chart slider_crank -o out", tmp);
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_EQ(
+      alone.err,
+      "slideway chart: slideway-charts is neither beside this program nor on the path (No such file or directory);"
+      " ./dev charts builds it\n");
+  write(tmp / "slideway-charts", "#!/bin/sh\necho \"$0: $@\"\nexit 1\n");
+  fs::permissions(tmp / "slideway-charts", fs::perms::owner_all);
+  const Result handed = shell("./slideway atlas --help baumgarte -o 'a b'", tmp);
+  EXPECT_EQ(handed.status, 1);
+  EXPECT_EQ(handed.out, (tmp / "slideway-charts").string() + ": atlas --help baumgarte -o a b\n");
+}
+
 TEST_F(Command, ListsEveryShippedSceneWithWhatItIs) {
   const std::vector<std::string> list = lines(slideway("scenes").out);
   std::size_t shipped = 0;

@@ -17,7 +17,7 @@ svg{--paper:#fff;--ink:#17202b;--quiet:#556272;--grid:#e3e8ed;--axis:#8b97a5;
 font:15px system-ui,"Segoe UI",Roboto,"Helvetica Neue","DejaVu Sans",sans-serif}
 @media(prefers-color-scheme:dark){svg{--paper:#12171d;--ink:#e8edf2;--quiet:#9dabb9;--grid:#2a333d;--axis:#66727f;
 --s0:#56b4e9;--s1:#f58a42;--s2:#35c797;--s3:#e08cc2;--s4:#d9b93b;--s5:#a8d8f5;--s6:#a3b0bd;--s7:#a996f0}}
-text{fill:var(--ink)}.q{fill:var(--quiet)}.t{font-weight:600;font-size:18px}
+text{fill:var(--ink)}.q{fill:var(--quiet)}.f{font-size:11px}.t{font-weight:600;font-size:18px}
 .g{stroke:var(--grid)}.a{stroke:var(--axis)}path,polyline{fill:none;stroke-width:2;stroke-linejoin:round}
 .n{paint-order:stroke;stroke:var(--paper);stroke-width:4px;stroke-linejoin:round}
 </style>)";
@@ -92,15 +92,17 @@ std::vector<Tick> ticks_of(const Axis& axis) {
 /// The figure as it grows, and the frame of its plot.
 class Drawing {
  public:
-  Drawing(const std::string& title, const std::string& subtitle, const Axis& x, const Axis& y, int legend_lines)
+  Drawing(const std::string& title, const std::string& subtitle, const std::string& foot, const Axis& x, const Axis& y,
+          int legend_lines)
       : x_(x), y_(y), top_(subtitle.empty() ? 40 : 40 + line_height) {
-    height_ = top_ + plot_height + 62 + legend_lines * line_height;
+    height_ = top_ + plot_height + 62 + legend_lines * line_height + (foot.empty() ? 0 : line_height);
     text_ =
         fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\">\n", width, height_);
     text_ += fmt::format("<title>{}</title>\n{}\n", escaped(title), style);
     text_ += "<rect width=\"100%\" height=\"100%\" fill=\"var(--paper)\"/>\n";
     text_ += fmt::format("<text class=\"t\" x=\"12\" y=\"26\">{}</text>\n", escaped(title));
     if (!subtitle.empty()) text_ += fmt::format("<text class=\"q\" x=\"12\" y=\"48\">{}</text>\n", escaped(subtitle));
+    text_ += fmt::format("<text class=\"q f\" x=\"12\" y=\"{}\">{}</text>\n", height_ - 9, escaped(foot));
   }
 
   double across(double x) const { return left + (width - left - right) * place_of(x_, x); }
@@ -243,16 +245,16 @@ void draw_lines(const Figure& figure, int place, Drawing& drawing) {
 
 }  // namespace
 
-std::string svg(const Chart& chart) {
-  Drawing drawing(chart.title, chart.subtitle, chart.x, chart.y, (legend_entries(chart) + 1) / 2);
+std::string svg(const Chart& chart, const std::string& foot) {
+  Drawing drawing(chart.title, chart.subtitle, foot, chart.x, chart.y, (legend_entries(chart) + 1) / 2);
   drawing.axes();
   draw_lines(chart, 0, drawing);
   return drawing.finished();
 }
 
-std::string svg(const Map& map) {
+std::string svg(const Map& map, const std::string& foot) {
   const int categories = static_cast<int>(map.categories.size());
-  Drawing drawing(map.title, map.subtitle, map.x, map.y, (categories + legend_entries(map) + 1) / 2);
+  Drawing drawing(map.title, map.subtitle, foot, map.x, map.y, (categories + legend_entries(map) + 1) / 2);
   for (int row = 0; row < map.rows; ++row) {
     for (int column = 0; column < map.columns; ++column) {
       const int category = map.cells[static_cast<std::size_t>(row * map.columns + column)];

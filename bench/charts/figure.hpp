@@ -61,7 +61,8 @@ struct Map {
   std::vector<Note> notes;
 };
 
-std::string svg(const Chart& chart);
-std::string svg(const Map& map);
+/// `foot` tells how it was made.
+std::string svg(const Chart& chart, const std::string& foot = "");
+std::string svg(const Map& map, const std::string& foot = "");
 
 }  // namespace slideway::charts
