@@ -1,0 +1,113 @@
+// slideway-charts: speed against accuracy, and where methods fail. `slideway chart` and `slideway atlas` are handed to
+// it; `docs` draws all that docs/charts.md shows.
+#include <fmt/format.h>
+#include <scene_source.hpp>
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "boards.hpp"
+
+namespace slideway::charts {
+namespace {
+
+enum Exit : int { good = 0, refused = 1, bad_input = 2 };
+
+struct Options {
+  std::string scene, atlas, directory = ".";
+  std::vector<std::string> settings, names;
+  bool quick = false;
+};
+
+Session session_of(const Options& options, const std::string& command, const std::filesystem::path& charts,
+                   const std::filesystem::path& results) {
+  return {options.quick, charts, results, provenance(command, SLIDEWAY_SOURCE_DIR)};
+}
+
+/// A map or a scene by name, with the names that there are.
+template <class Entry>
+const Entry& find(const std::vector<Entry>& entries, const std::string& name) {
+  std::string known;
+  for (const Entry& entry : entries) {
+    if (entry.name == name) return entry;
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw CLI::ValidationError(fmt::format("'{}' is not one of: {}", name, known));
+}
+
+int chart(const Options& options) {
+  const auto scene = app::load_scene(options.scene, options.settings, app::Start::checked);
+  if (!scene) return bad_input;
+  std::string command = "slideway chart " + options.scene;
+  for (const std::string& setting : options.settings) command += " --set " + setting;
+  return draw_scene(*scene, session_of(options, command, options.directory, options.directory)) ? good : refused;
+}
+
+int atlas_map(const Options& options) {
+  find(atlas(), options.atlas);
+  draw_atlas(options.atlas,
+             session_of(options, "slideway atlas " + options.atlas, options.directory, options.directory));
+  return good;
+}
+
+int docs(const Options& options) {
+  const std::filesystem::path root = options.directory.empty() ? SLIDEWAY_SOURCE_DIR : options.directory;
+  for (const std::string& name : options.names) find(boards(), name);
+  for (const Board& board : boards()) {
+    const bool wanted = options.names.empty() ||
+                        std::find(options.names.begin(), options.names.end(), board.name) != options.names.end();
+    if (!wanted) continue;
+    board.draw(session_of(options, "./dev charts " + board.name, root / "docs/charts", root / "bench/results"));
+  }
+  return good;
+}
+
+int run(int count, char** arguments) {
+  CLI::App command("Speed against accuracy, and where methods fail.", "slideway-charts");
+  command.require_subcommand(1);
+  Options options;
+  int status = good;
+
+  CLI::App* one = command.add_subcommand("chart", "Chart a scene's error against time: SCENE_time.svg, _evaluations, "
+                                                  "_forces, SCENE.json");
+  one->add_option("SCENE", options.scene, "A scene file, - for standard input, or the name of a shipped scene")
+      ->required();
+  one->add_option("--set", options.settings, "Replace one value of the scene, as in guide.slot.mu=0.3")
+      ->allow_extra_args(false);
+  one->callback([&] { status = chart(options); });
+
+  CLI::App* map = command.add_subcommand("atlas", "Map where methods fail: NAME_*.svg, NAME.json");
+  map->add_option("NAME", options.atlas, "baumgarte, friction, pole, stick_slip, mass_ratio, singular, long_run, units")
+      ->required();
+  map->callback([&] { status = atlas_map(options); });
+
+  CLI::App* all = command.add_subcommand("docs", "All that docs/charts.md shows, or what is named");
+  all->add_option("NAME", options.names, "A charted scene, hlcp, engines, growth, detail, or a map of the atlas");
+  all->add_option("--root", options.directory, "Write to DIR/docs/charts and DIR/bench/results")->default_str("");
+  all->callback([&] { status = docs(options); });
+
+  for (CLI::App* verb : {one, map, all}) {
+    verb->add_flag("--quick", options.quick, "Coarse settings alone, to see that everything still draws");
+    if (verb != all) verb->add_option("-o,--output", options.directory, "Directory to write to");
+  }
+  try {
+    command.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return command.exit(error);
+    fmt::print(stderr, "slideway-charts: {}; --help shows what there is\n", error.what());
+    return bad_input;
+  }
+  return status;
+}
+
+}  // namespace
+}  // namespace slideway::charts
+
+int main(int count, char** arguments) {
+  try {
+    return slideway::charts::run(count, arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "slideway-charts: {}\n", error.what());
+    return 2;
+  }
+}
