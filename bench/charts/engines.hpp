@@ -90,6 +90,7 @@ class SteppedEngine final : public Contender {
         angle[i] = now[i] + two_pi * std::round((angle[i] - now[i]) / two_pi);
       }
       outcome.q.push_back(mechanism_.joints(angle));
+      outcome.lambda.emplace_back();  // not asked for
       from = to;
     }
     return outcome;

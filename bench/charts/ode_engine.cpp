@@ -128,6 +128,8 @@ class OdeModel {
     return rail_point(guide.origin + guide.tangent) - rail_point(guide.origin);
   }
 
+  /// Each contact point touches the side of the slot that it is beyond, as where collisions are looked for: joints for
+  /// both sides at once press against each other, and their friction holds the slider.
   void touch() {
     const Guide& guide = mechanism_.guide();
     const Vec2 t = tangent(), n = perp(t), origin = rail_point(guide.origin);
@@ -140,12 +142,11 @@ class OdeModel {
       const double gap = dot(n, Vec2{contact.geom.pos[0], contact.geom.pos[1]} - origin);
       contact.fdir1[0] = t.x;
       contact.fdir1[1] = t.y;
-      for (const double side : {1.0, -1.0}) {
-        contact.geom.normal[0] = side * n.x;
-        contact.geom.normal[1] = side * n.y;
-        contact.geom.depth = -side * gap;
-        dJointAttach(dJointCreateContact(world_.get(), contacts_.get(), &contact), body_[mechanism_.slider], rail());
-      }
+      const double side = gap > 0 ? -1 : 1;
+      contact.geom.normal[0] = side * n.x;
+      contact.geom.normal[1] = side * n.y;
+      contact.geom.depth = std::fabs(gap);
+      dJointAttach(dJointCreateContact(world_.get(), contacts_.get(), &contact), body_[mechanism_.slider], rail());
     }
   }
 
