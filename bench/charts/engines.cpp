@@ -8,7 +8,7 @@
 
 namespace slideway::charts {
 
-CrankMechanism crank_mechanism(const RunScene& scene, double mean_force, double interval) {
+CrankMechanism crank_mechanism(const RunScene& scene, double even_force, double interval) {
   const Guide& guide = scene.guide[0];
   const Body& slider = scene.body[guide.slider];
   bool fits = scene.guides == 1 && scene.drives == 0 && scene.pins == 0 && scene.springs == 0 &&
@@ -21,7 +21,7 @@ CrankMechanism crank_mechanism(const RunScene& scene, double mean_force, double 
   }
   if (!fits) throw std::invalid_argument("not a crank mechanism with one slider");
   CrankMechanism mechanism{scene, guide.slider, guide.rail, slider.parent, std::fabs(guide.contact[0].x), {}, {}, 0,
-                           0,     mean_force,   interval};
+                           0,     even_force,   interval};
   double q[Size::bodies], v[Size::bodies];
   for (int i = 0; i < scene.bodies; ++i) {
     q[i] = scene.body[i].q[0];

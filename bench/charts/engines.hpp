@@ -12,7 +12,7 @@ namespace slideway::charts {
 /// How an engine's slider is held back.
 enum class EngineFriction {
   none,         ///< mu = 0: a model that all express
-  constant,     ///< a bound that stays: mu times the mean of the contact forces' sum in the exact run
+  constant,     ///< a bound that stays, and does as much work as friction in the exact run: the user knows that
   last_step,    ///< a bound that is set before each step: mu times that sum, from the slide joint's force in the last
   contact_pair  ///< no slide joint: contacts on both sides of a slot, at the scene's contact points
 };
@@ -24,8 +24,8 @@ struct CrankMechanism {
   double half_length;                               ///< m: of the contacts from the slider's origin
   double x[3 * Size::bodies], u[3 * Size::bodies];  ///< start: x, y, angle body by body, and their rates
   double along, along_rate;                         ///< start of the slide joint: m from the guide's origin, m/s
-  double mean_force;                                ///< N: sum of the contact forces' magnitudes, mean of the exact run
-  double interval;                                  ///< s between samples
+  double even_force;  ///< N: constant sum of contact forces whose friction does as much work in the exact run
+  double interval;    ///< s between samples
 
   const Guide& guide() const { return scene.guide[0]; }
   Vec2 tangent() const;  ///< of the rail at the start, world's frame
@@ -37,11 +37,12 @@ struct CrankMechanism {
 };
 
 /// invalid_argument if the scene is another.
-CrankMechanism crank_mechanism(const RunScene& scene, double mean_force, double interval);
+CrankMechanism crank_mechanism(const RunScene& scene, double even_force, double interval);
 
 struct Engine {
   std::string name, version;  ///< version empty: missing when this was built
-  std::string cannot;         ///< what of Coulomb's law in a guide it cannot express, in one line
+  std::string cannot;         ///< what of a guide with Coulomb's friction it cannot express
+  std::string in_short;       ///< the same in 40 characters, for the chart
   void (*add)(const CrankMechanism& mechanism, EngineFriction friction, Contenders& contenders);
   std::vector<EngineFriction> frictions;  ///< that it has, but for none
 };

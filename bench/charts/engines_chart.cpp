@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <slideway/scenes/crank_rocker_offset.hpp>
 
@@ -39,21 +40,22 @@ std::vector<io::RunStepper::State> fine_run(const RunScene& scene, double durati
   return states;
 }
 
-/// Of the sum of the contact forces' magnitudes, over the run.
-double mean_force(const RunScene& scene, double duration) {
+/// The constant sum of contact forces whose friction does as much work in the exact run, N.
+double even_force(const RunScene& scene, double duration) {
   constexpr int samples = 2000;
   const io::RunStepper stepper = exact_stepper(scene);
   io::RunStepper::State state = stepper.start();
-  double sum = 0;
+  double work = 0, path = 0;
   for (int k = 0; k < samples; ++k) {
     io::RunStepper::Reaction r;
     if (stepper.reaction(state, {}, r).status != Status::ok ||
         stepper.step(state, duration / samples).status != Status::ok) {
-      throw std::runtime_error("no mean force");
+      throw std::runtime_error("no mean of the contact forces");
     }
-    for (int c = 0; c < stepper.source.tables.contacts; ++c) sum += std::fabs(r.lambda[c]);
+    for (int c = 0; c < stepper.source.tables.contacts; ++c) work += std::fabs(r.lambda[c] * r.slip[0]);
+    path += std::fabs(r.slip[0]);
   }
-  return sum / samples;
+  return work / path;
 }
 
 /// A fine run as a reference; a coarser one tells how many digits it has.
@@ -87,7 +89,8 @@ double ns_of_step(const Measured& m) {
   return setting == "dt" || setting == "step" ? m.ns * m.setting : 0;
 }
 
-const Measured* cheapest_step(const EngineComparison& comparison, const std::function<bool(const Measured&)>& among) {
+template <class Among>
+const Measured* cheapest_step(const EngineComparison& comparison, const Among& among) {
   const Measured* best = nullptr;
   for (const Measured& m : comparison.measured.measured) {
     if (!m.failure.empty() || m.ns_low == 0 || ns_of_step(m) == 0 || !among(m)) continue;
@@ -107,21 +110,19 @@ io::Json json_of_step(const Measured& m) {
 io::Json json_of(const EngineComparison& comparison) {
   io::Json json = document(comparison.measured);
   json.erase("cheapest");
-  json["mean_contact_force"] = comparison.mechanism->mean_force;
+  json["even_contact_force"] = comparison.mechanism->even_force;
   for (auto& point : json["measured"]) {  // engines are not asked for contact forces
     if (point.contains("force_error") && !point.contains("dt")) point.erase("force_error");
   }
   io::Json steps = io::Json::array();
   for (const Engine& engine : engines()) {
-    const StepRatio ratio = step_ratio(comparison, engine);
-    if (ratio.engine == nullptr) continue;
-    io::Json row{
-        {"engine", engine.name}, {"least_error", ratio.least_error}, {"cheapest_step", json_of_step(*ratio.engine)}};
-    if (ratio.kernel != nullptr) {
-      row["kernel"] = json_of_step(*ratio.kernel);
-      row["times_dearer"] = ratio.engine_ns / ratio.kernel_ns;
+    for (const StepRatio& ratio : step_ratios(comparison, engine)) {
+      steps.push_back({{"engine", engine.name},
+                       {"step", json_of_step(*ratio.engine)},
+                       {"least_error", ratio.least_error},
+                       {"kernel", json_of_step(*ratio.kernel)},
+                       {"times_dearer", ratio.ratio()}});
     }
-    steps.push_back(std::move(row));
   }
   json["steps"] = std::move(steps);
   return json;
@@ -141,7 +142,7 @@ EngineComparison compare_engines(const io::SceneFile& scene, const oracle::Refer
     comparison.measured.reference = fine_reference(*comparison.scene, reference.duration);
   }
   comparison.mechanism = std::make_unique<CrankMechanism>(
-      crank_mechanism(*comparison.scene, mean_force(*comparison.scene, reference.duration), interval));
+      crank_mechanism(*comparison.scene, even_force(*comparison.scene, reference.duration), interval));
   Contenders& contenders = comparison.measured.contenders;
   if (frictional) {
     add_methods(Stepper<crank_rocker_offset>{}, interval, "", contenders);
@@ -174,28 +175,40 @@ Chart engines_chart(const EngineComparison& comparison) {
     ++colour;
   }
   chart.subtitle += missing;
-  double row = 1e-14;
-  for (const Engine& engine : engines()) {
-    if (!frictional || engine.version.empty()) continue;
-    chart.notes.push_back(
-        {{chart.x.from * 1.1, row}, fmt::format("{} {}: {}", engine.name, engine.version, engine.cannot)});
-    row /= 10;
+  if (frictional) {  // where no line is: cheap, yet less accurate than slideway, and dear, yet more than engines
+    const double x = chart.x.from * std::pow(chart.x.to / chart.x.from, 0.46);
+    double y = 1e-8;
+    chart.notes.push_back({{x, y}, "None has friction by this step's force."});
+    for (const Engine& engine : engines()) {
+      if (!engine.version.empty()) chart.notes.push_back({{x, y /= 10}, engine.in_short});
+    }
   }
   return chart;
 }
 
-StepRatio step_ratio(const EngineComparison& comparison, const Engine& engine) {
-  StepRatio ratio;
-  ratio.least_error = HUGE_VAL;
-  for (const Measured& m : comparison.measured.measured) {
-    if (m.failure.empty() && is_of(*m.contender, engine)) ratio.least_error = std::min(ratio.least_error, m.error);
+double StepRatio::engine_ns() const { return ns_of_step(*engine); }
+double StepRatio::kernel_ns() const { return ns_of_step(*kernel); }
+
+std::vector<StepRatio> step_ratios(const EngineComparison& comparison, const Engine& engine) {
+  std::vector<StepRatio> ratios;
+  for (const auto& contender : comparison.measured.contenders) {
+    if (!is_of(*contender, engine)) continue;
+    StepRatio ratio{cheapest_step(comparison, [&](const Measured& m) { return m.contender == contender.get(); }),
+                    nullptr, HUGE_VAL};
+    for (const Measured& m : comparison.measured.measured) {
+      if (m.failure.empty() && m.contender == contender.get()) ratio.least_error = std::min(ratio.least_error, m.error);
+    }
+    ratio.kernel = cheapest_step(
+        comparison, [&](const Measured& m) { return is_kernel(*m.contender) && m.error < ratio.least_error; });
+    if (ratio.engine != nullptr && ratio.kernel != nullptr) ratios.push_back(ratio);
   }
-  ratio.engine = cheapest_step(comparison, [&](const Measured& m) { return is_of(*m.contender, engine); });
-  ratio.kernel = cheapest_step(
-      comparison, [&](const Measured& m) { return is_kernel(*m.contender) && m.error < ratio.least_error; });
-  if (ratio.engine != nullptr) ratio.engine_ns = ns_of_step(*ratio.engine);
-  if (ratio.kernel != nullptr) ratio.kernel_ns = ns_of_step(*ratio.kernel);
-  return ratio;
+  return ratios;
+}
+
+const StepRatio* least_ratio(const std::vector<StepRatio>& ratios) {
+  const auto least = std::min_element(ratios.begin(), ratios.end(),
+                                      [](const StepRatio& a, const StepRatio& b) { return a.ratio() < b.ratio(); });
+  return least == ratios.end() ? nullptr : &*least;
 }
 
 io::Json document(const EngineComparison& with_friction, const EngineComparison& without) {

@@ -25,13 +25,19 @@ EngineComparison compare_engines(const io::SceneFile& scene, const oracle::Refer
 
 Chart engines_chart(const EngineComparison& comparison);
 
-/// The cheapest step of an engine, and the cheapest of the kernel whose error is below the engine's least.
+/// A step of an engine's setting, and the kernel's cheapest step whose error is below that setting's least.
 struct StepRatio {
-  const Measured *engine = nullptr, *kernel = nullptr;  ///< null: none was timed
-  double engine_ns = 0, kernel_ns = 0;                  ///< of a step
-  double least_error = 0;                               ///< of the engine, at any cost
+  const Measured *engine = nullptr, *kernel = nullptr;
+  double least_error = 0;  ///< of the engine's setting, at any length of step
+
+  double engine_ns() const;
+  double kernel_ns() const;
+  double ratio() const { return engine_ns() / kernel_ns(); }
 };
-StepRatio step_ratio(const EngineComparison& comparison, const Engine& engine);
+/// Of each setting of an engine that was timed with steps of one length, where the kernel has such a step.
+std::vector<StepRatio> step_ratios(const EngineComparison& comparison, const Engine& engine);
+/// The least of them; null if there is none.
+const StepRatio* least_ratio(const std::vector<StepRatio>& ratios);
 
 io::Json document(const EngineComparison& with_friction, const EngineComparison& without);
 

@@ -35,7 +35,6 @@ class CartesianMotion : public Motion {
 
   /// For implicit solvers: forces that are unknown beside y, enough for all modes; those that are not used are zero.
   int forces() const { return forces_; }
-  int guides() const { return scene_.guides; }  ///< each has the last of these while it is at rest
   /// Those of the last rates().
   void copy_forces(double* force) const;
   /// CartesianEquations' residual at y, accelerations and forces; the equations then hold Phi and its rate.

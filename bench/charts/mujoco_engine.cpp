@@ -8,11 +8,15 @@ const char* mujoco_version();
 }  // namespace
 
 Engine mujoco_engine() {
-  return {"MuJoCo",
-          mujoco_version(),
-          "friction bound constant or a step late; soft constraints, never quite at rest",
-          add_mujoco,
-          {EngineFriction::constant, EngineFriction::last_step}};
+  return {
+      "MuJoCo",
+      mujoco_version(),
+      "friction bounded by the joint's own force in the same step: the bound is constant, or set from the last step's "
+      "force. Rigid constraints: impedance is below 1, and default constraints yield visibly. Rest: a slider that is "
+      "held creeps",
+      "MuJoCo: soft constraints, creeps at rest",
+      add_mujoco,
+      {EngineFriction::constant, EngineFriction::last_step}};
 }
 
 }  // namespace slideway::charts
@@ -118,7 +122,7 @@ class MujocoModel {
       data_->qpos[address_[i]] = i == mechanism_.slider ? mechanism_.along : mechanism_.scene.body[i].q[0];
       data_->qvel[address_[i]] = i == mechanism_.slider ? mechanism_.along_rate : mechanism_.scene.body[i].v[0];
     }
-    set_bound(mechanism_.guide().mu * mechanism_.mean_force);
+    set_bound(mechanism_.guide().mu * mechanism_.even_force);
     if (friction_ != EngineFriction::last_step) return;
     mj_forward(model_.get(), data_.get());
     follow_reaction();

@@ -8,11 +8,15 @@ const char* ode_version();
 }  // namespace
 
 Engine ode_engine() {
-  return {"ODE",
-          ode_version(),
-          "friction bound constant, a step late, or from contacts before friction; order 1",
-          add_ode,
-          {EngineFriction::constant, EngineFriction::last_step, EngineFriction::contact_pair}};
+  return {
+      "ODE",
+      ode_version(),
+      "friction bounded by the joint's own force in the same step: a slider's bound is constant, or set from the last "
+      "step's force; dWorldStep bounds friction of contacts by normal forces that it finds without friction. An order "
+      "of more than 1",
+      "ODE: order 1, bound from before friction",
+      add_ode,
+      {EngineFriction::constant, EngineFriction::last_step, EngineFriction::contact_pair}};
 }
 
 }  // namespace slideway::charts
@@ -74,7 +78,7 @@ class OdeModel {
     dJointSetFeedback(slide_, &feedback_);
     if (friction_ == EngineFriction::none) return;
     dJointSetSliderParam(slide_, dParamVel, 0);
-    dJointSetSliderParam(slide_, dParamFMax, mechanism_.guide().mu * mechanism_.mean_force);
+    dJointSetSliderParam(slide_, dParamFMax, mechanism_.guide().mu * mechanism_.even_force);
   }
 
   bool step(double h) {

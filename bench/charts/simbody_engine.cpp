@@ -10,7 +10,12 @@ std::string simbody_version();
 Engine simbody_engine() {
   return {"Simbody",
           simbody_version(),
-          "friction by a user's force of a bound constant or a step late; never at rest (tanh)",
+          "friction of a slider at all: it is a user's force. Bounded by the joint's own force in the same step: that "
+          "is known "
+          "after forces are asked for, so that the bound is constant, or set from the last step's force. Rest: the "
+          "force is "
+          "smooth in speed",
+          "Simbody: smooth friction, creeps at rest",
           add_simbody,
           {EngineFriction::constant, EngineFriction::last_step}};
 }
@@ -142,7 +147,7 @@ class SimbodyContender final : public Contender {
   }
 
   void advance(const std::vector<double>& times, double how, Outcome& outcome) const {
-    bound_ = mechanism_.guide().mu * mechanism_.mean_force;
+    bound_ = mechanism_.guide().mu * mechanism_.even_force;
     const auto integrator = make_integrator(how);
     if (setting == "accuracy") integrator->setAccuracy(how);
     if (friction_ == EngineFriction::last_step) {
