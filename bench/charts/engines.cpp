@@ -14,7 +14,8 @@ CrankMechanism crank_mechanism(const RunScene& scene, double even_force, double 
   bool fits = scene.guides == 1 && scene.drives == 0 && scene.pins == 0 && scene.springs == 0 &&
               scene.joint_springs == 0 && scene.loads == 0 && guide.contacts == 2 && slider.parent != ground &&
               guide.rail != guide.slider && guide.viscous == 0 && guide.preload == 0 && guide.mu == guide.mu_static &&
-              guide.contact[0].y == 0 && guide.contact[1].y == 0 && guide.contact[0].x == -guide.contact[1].x;
+              guide.tangent.x == 1 && slider.com.x == 0 && slider.com.y == 0 && guide.contact[0].y == 0 &&
+              guide.contact[1].y == 0 && guide.contact[0].x == -guide.contact[1].x;
   for (int i = 0; i < scene.bodies; ++i) {
     fits = fits && scene.body[i].joint == Joint::revolute && scene.body[i].angle == 0;
     fits = fits && scene.body[i].parent != guide.slider;

@@ -17,7 +17,8 @@ enum class EngineFriction {
   contact_pair  ///< no slide joint: contacts on both sides of a slot, at the scene's contact points
 };
 
-/// A scene with one guide of two contacts, symmetric about the slider's origin, whose slider turns on another body.
+/// A scene with one guide, along its rail's x axis, of two contacts on the slider's, symmetric about its origin and
+/// centre of mass, whose slider turns on another body.
 struct CrankMechanism {
   const RunScene& scene;
   int slider, rail, carrier;                        ///< bodies; the carrier is what the slider turns on

@@ -175,10 +175,10 @@ Chart engines_chart(const EngineComparison& comparison) {
     ++colour;
   }
   chart.subtitle += missing;
-  if (frictional) {  // where no line is: cheap, yet less accurate than slideway, and dear, yet more than engines
-    const double x = chart.x.from * std::pow(chart.x.to / chart.x.from, 0.46);
+  if (frictional) {  // where no line is: dearer than the kernel, more accurate than engines
+    const double x = chart.x.from * std::pow(chart.x.to / chart.x.from, 0.45);
     double y = 1e-8;
-    chart.notes.push_back({{x, y}, "None has friction by this step's force."});
+    chart.notes.push_back({{x, y}, "No joint is braked by its own force."});
     for (const Engine& engine : engines()) {
       if (!engine.version.empty()) chart.notes.push_back({{x, y /= 10}, engine.in_short});
     }

@@ -66,7 +66,7 @@ class Ida final : public Integrator {
   }
 
  private:
-  static constexpr long most_steps = 30000;  ///< between samples: some tenths of a second, longer than what is charted
+  static constexpr long most_steps = 10000;  ///< between samples: a tenth of a second or two, longer than is charted
 
   /// Of index 2, forces and multipliers are known to order h less than positions, and roughly suffice: held to the same
   /// tolerance, Newton's iteration gives up from 1e-7 down.

@@ -11,9 +11,8 @@ Engine mujoco_engine() {
   return {
       "MuJoCo",
       mujoco_version(),
-      "friction bounded by the joint's own force in the same step: the bound is constant, or set from the last step's "
-      "force. Rigid constraints: impedance is below 1, and default constraints yield visibly. Rest: a slider that is "
-      "held creeps",
+      "friction bounded by a joint's own force in the same step: the bound is constant, or set from the last step's "
+      "force. Rigid constraints: they give way, the default ones visibly. Rest: a slider that is held creeps",
       "MuJoCo: soft constraints, creeps at rest",
       add_mujoco,
       {EngineFriction::constant, EngineFriction::last_step}};

@@ -11,10 +11,10 @@ Engine ode_engine() {
   return {
       "ODE",
       ode_version(),
-      "friction bounded by the joint's own force in the same step: a slider's bound is constant, or set from the last "
-      "step's force; dWorldStep bounds friction of contacts by normal forces that it finds without friction. An order "
-      "of more than 1",
-      "ODE: order 1, bound from before friction",
+      "friction bounded by a joint's own force in the same step: a slide joint's bound is constant, or set from the "
+      "last step's force. Of contacts dWorldStep bounds friction by forces that it finds without friction, "
+      "dWorldQuickStep by those that its iteration has come to. An order of more than 1",
+      "ODE: order 1",
       add_ode,
       {EngineFriction::constant, EngineFriction::last_step, EngineFriction::contact_pair}};
 }

@@ -8,16 +8,15 @@ std::string simbody_version();
 }  // namespace
 
 Engine simbody_engine() {
-  return {"Simbody",
-          simbody_version(),
-          "friction of a slider at all: it is a user's force. Bounded by the joint's own force in the same step: that "
-          "is known "
-          "after forces are asked for, so that the bound is constant, or set from the last step's force. Rest: the "
-          "force is "
-          "smooth in speed",
-          "Simbody: smooth friction, creeps at rest",
-          add_simbody,
-          {EngineFriction::constant, EngineFriction::last_step}};
+  return {
+      "Simbody",
+      simbody_version(),
+      "friction of a joint at all: it is a user's force. Friction bounded by the joint's own force in the same step: "
+      "that is known after forces are asked for, so that the bound is constant, or set from the last step's force. "
+      "Rest: such a force has to be smooth in speed",
+      "Simbody: smooth friction, creeps at rest",
+      add_simbody,
+      {EngineFriction::constant, EngineFriction::last_step}};
 }
 
 }  // namespace slideway::charts
