@@ -110,6 +110,7 @@ io::Json json_of_step(const Measured& m) {
 io::Json json_of(const EngineComparison& comparison) {
   io::Json json = document(comparison.measured);
   json.erase("cheapest");
+  json["mu"] = comparison.scene->guide[0].mu;
   json["even_contact_force"] = comparison.mechanism->even_force;
   for (auto& point : json["measured"]) {  // engines are not asked for contact forces
     if (point.contains("force_error") && !point.contains("dt")) point.erase("force_error");

@@ -13,7 +13,8 @@ Engine ode_engine() {
       ode_version(),
       "friction bounded by a joint's own force in the same step: a slide joint's bound is constant, or set from the "
       "last step's force. Of contacts dWorldStep bounds friction by forces that it finds without friction, "
-      "dWorldQuickStep by those that its iteration has come to. An order of more than 1",
+      "dWorldQuickStep by those that its iteration has come to. Rest by dWorldQuickStep: the slider creeps. An order "
+      "of more than 1",
       "ODE: order 1",
       add_ode,
       {EngineFriction::constant, EngineFriction::last_step, EngineFriction::contact_pair}};
