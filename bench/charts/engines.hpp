@@ -43,7 +43,7 @@ CrankMechanism crank_mechanism(const RunScene& scene, double even_force, double 
 struct Engine {
   std::string name, version;  ///< version empty: missing when this was built
   std::string cannot;         ///< what of a guide with Coulomb's friction it cannot express
-  std::string in_short;       ///< the same in 40 characters, for the chart
+  std::string in_short;       ///< the same in 36 characters, for the chart
   void (*add)(const CrankMechanism& mechanism, EngineFriction friction, Contenders& contenders);
   std::vector<EngineFriction> frictions;  ///< that it has, but for none
 };

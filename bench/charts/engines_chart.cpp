@@ -177,7 +177,7 @@ Chart engines_chart(const EngineComparison& comparison) {
   }
   chart.subtitle += missing;
   if (frictional) {  // where no line is: dearer than the kernel, more accurate than engines
-    const double x = chart.x.from * std::pow(chart.x.to / chart.x.from, 0.45);
+    const double x = chart.x.from * std::pow(chart.x.to / chart.x.from, 0.52);
     double y = 1e-8;
     chart.notes.push_back({{x, y}, "No joint is braked by its own force."});
     for (const Engine& engine : engines()) {

@@ -13,7 +13,7 @@ Engine mujoco_engine() {
       mujoco_version(),
       "friction bounded by a joint's own force in the same step: the bound is constant, or set from the last step's "
       "force. Rigid constraints: they give way, the default ones visibly. Rest: a slider that is held creeps",
-      "MuJoCo: soft constraints, creeps at rest",
+      "MuJoCo: soft constraints, creeps",
       add_mujoco,
       {EngineFriction::constant, EngineFriction::last_step}};
 }

@@ -14,7 +14,7 @@ Engine simbody_engine() {
       "friction of a joint at all: it is a user's force. Friction bounded by the joint's own force in the same step: "
       "that is known after forces are asked for, so that the bound is constant, or set from the last step's force. "
       "Rest: such a force has to be smooth in speed",
-      "Simbody: smooth friction, creeps at rest",
+      "Simbody: smooth friction, creeps",
       add_simbody,
       {EngineFriction::constant, EngineFriction::last_step}};
 }
