@@ -120,12 +120,16 @@ void CartesianEquations::constrain(const Point& a, const Point& b, Vec2 e, bool 
     matrix_(row_, 3 * b.body + 2) -= dot(e, perp(turns ? b.from_origin + gap : b.from_origin));
   }
   right_(row_) = target - known - scene_.alpha * rate - scene_.beta * Phi;
+  Phi_(row_) = Phi;
+  rate_(row_) = rate;
 }
 
 void CartesianEquations::constrain_angle(int a, int b, double Phi, double rate, double target) {
   matrix_(row_, 3 * a + 2) += 1;
   if (b != ground) matrix_(row_, 3 * b + 2) -= 1;
   right_(row_) = target - scene_.alpha * rate - scene_.beta * Phi;
+  Phi_(row_) = Phi;
+  rate_(row_) = rate;
 }
 
 /// What an unknown in `column` does: a force on a's body at a's place, and the opposite on b's there.
@@ -292,20 +296,27 @@ void CartesianEquations::forces(double, const double* x, const double* u, const 
   }
 }
 
-bool CartesianEquations::accelerate(double t, const double* x, const double* u, const GuideFriction* friction,
-                                    signed char* sign, bool follow, double* acceleration) {
+void CartesianEquations::assemble(double t, const double* x, const double* u, const GuideFriction* friction,
+                                  const signed char* sign) {
   int size = 3 * scene_.bodies + 2 * scene_.pins + scene_.drives;
   for (int i = 0; i < scene_.bodies; ++i) size += 3 - coordinates(scene_.body[i].joint);
   for (int g = 0; g < scene_.guides; ++g) size += scene_.guide[g].contacts + (friction[g].held ? 1 : 0);
+  matrix_.setZero(size, size);
+  right_.setZero(size);
+  Phi_.resize(size);
+  rate_.resize(size);
+  row_ = 3 * scene_.bodies;
+  forces(t, x, u, friction);
+  joints(t, x, u);
+  drives(t, x, u);
+  guides(x, u, friction, sign);
+}
+
+bool CartesianEquations::accelerate(double t, const double* x, const double* u, const GuideFriction* friction,
+                                    signed char* sign, bool follow, double* acceleration) {
   const int contacts_of_all = contacts(scene_);
   for (int round = 0; round < 8; ++round) {
-    matrix_.setZero(size, size);
-    right_.setZero(size);
-    row_ = 3 * scene_.bodies;
-    forces(t, x, u, friction);
-    joints(t, x, u);
-    drives(t, x, u);
-    guides(x, u, friction, sign);
+    assemble(t, x, u, friction, sign);
     lu_.compute(matrix_);
     solution_ = lu_.solve(right_);
     bool same = true;
@@ -320,6 +331,22 @@ bool CartesianEquations::accelerate(double t, const double* x, const double* u, 
     return true;
   }
   return false;
+}
+
+void CartesianEquations::residual(double t, const double* x, const double* u, const GuideFriction* friction,
+                                  const signed char* sign, const double* acceleration, const double* force,
+                                  double* left) {
+  assemble(t, x, u, friction, sign);
+  using Eigen::Map, Eigen::VectorXd;
+  const int n = 3 * scene_.bodies;
+  Map<VectorXd>(left, row_).noalias() = matrix_.leftCols(n) * Map<const VectorXd>(acceleration, n) - right_;
+  Map<VectorXd>(left, n).noalias() += matrix_.topRightCorner(n, rows()) * Map<const VectorXd>(force, rows());
+}
+
+void CartesianEquations::add_transposed(const double* m, double* out) const {
+  using Eigen::Map, Eigen::VectorXd;
+  const int n = 3 * scene_.bodies;
+  Map<VectorXd>(out, n).noalias() += matrix_.bottomLeftCorner(rows(), n).transpose() * Map<const VectorXd>(m, rows());
 }
 
 }  // namespace slideway::charts

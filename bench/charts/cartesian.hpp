@@ -33,8 +33,22 @@ class CartesianEquations {
   bool accelerate(double t, const double* x, const double* u, const GuideFriction* friction, signed char* sign,
                   bool follow, double* acceleration);
   // Of the last accelerate():
-  double lambda(int contact) const { return solution_(first_contact_ + contact); }
-  double held_force(int guide) const { return solution_(held_[guide]); }
+  double lambda(int contact) const { return forces()[row_of_contact(contact)]; }
+  /// One for each row: of joints and pins, of drives, of contacts, of guides held.
+  const double* forces() const { return solution_.data() + 3 * scene_.bodies; }
+
+  /// The same equations as an implicit solver asks for them, all at once: what given accelerations and forces leave of
+  /// the laws of motion (3 for each body) and of each row. `sign` is of the contact forces.
+  void residual(double t, const double* x, const double* u, const GuideFriction* friction, const signed char* sign,
+                const double* acceleration, const double* force, double* left);
+  // Of the last residual() or accelerate():
+  int rows() const { return row_ - 3 * scene_.bodies; }
+  int row_of_contact(int contact) const { return first_contact_ - 3 * scene_.bodies + contact; }
+  int row_of_held(int guide) const { return held_[guide] - 3 * scene_.bodies; }
+  double Phi(int row) const { return Phi_(3 * scene_.bodies + row); }
+  double Phi_rate(int row) const { return rate_(3 * scene_.bodies + row); }
+  /// out += Phi_q^T m.
+  void add_transposed(const double* m, double* out) const;
 
  private:
   struct Point;
@@ -48,12 +62,13 @@ class CartesianEquations {
   void drives(double t, const double* x, const double* u);
   void guides(const double* x, const double* u, const GuideFriction* friction, const signed char* sign);
   void forces(double t, const double* x, const double* u, const GuideFriction* friction);
+  void assemble(double t, const double* x, const double* u, const GuideFriction* friction, const signed char* sign);
 
   const RunScene& scene_;
   int row_ = 0, first_contact_ = 0;
   int held_[Size::guides] = {};
   Eigen::MatrixXd matrix_;
-  Eigen::VectorXd right_, solution_;
+  Eigen::VectorXd right_, solution_, Phi_, rate_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };
 

@@ -1,6 +1,6 @@
 // Draws docs/charts and writes bench/results.
 //
-//     draw_charts [--quick] [--root DIR] [SCENE...]
+//     draw_charts [--quick] [--root DIR] [NAME...]      a scene, or engines
 //
 // --quick: coarse settings alone, to see that everything still draws; nothing that it writes is for docs.
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "embedded.hpp"
+#include "engines_chart.hpp"
 #include "kernel_contender.hpp"
 #include "work_precision.hpp"
 
@@ -23,7 +24,11 @@ namespace fs = std::filesystem;
 struct Options {
   bool quick = false;
   fs::path root = SLIDEWAY_SOURCE_DIR;
-  std::vector<std::string> scenes;
+  std::vector<std::string> names;
+
+  bool wants(const std::string& name) const {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  }
 };
 
 void write(const fs::path& file, const std::string& text) {
@@ -39,27 +44,60 @@ io::Json read_json(const fs::path& file) {
   return io::Json::parse(in);
 }
 
-void draw(const EmbeddedScene& embedded, const Options& options) {
+/// A shipped scene and its reference.
+std::pair<io::SceneFile, oracle::Reference> read_scene(const std::string& name) {
   const fs::path source = SLIDEWAY_SOURCE_DIR;
-  io::Reading reading = io::read_scene((source / "scenes" / (embedded.name + ".toml")).string(), {});
+  io::Reading reading = io::read_scene((source / "scenes" / (name + ".toml")).string(), {});
   if (!reading.scene) throw std::runtime_error(to_string(reading.defects.at(0)));
-  WorkPrecision wp{std::move(*reading.scene),
-                   oracle::reference_of(read_json(source / "oracle/references" / (embedded.name + ".json"))),
-                   {},
-                   {}};
-  const double interval = wp.reference.duration / oracle::reference_intervals;
-  embedded.add(interval, wp.contenders);
-  add_methods(io::RunStepper(wp.scene.scene), interval, ", run time", wp.contenders);
-  add_sundials(wp.scene.scene, wp.contenders);
+  return {std::move(*reading.scene), oracle::reference_of(read_json(source / "oracle/references" / (name + ".json")))};
+}
+
+MeasureOptions how_to_measure(const std::string& name, const Options& options) {
   MeasureOptions how;
   if (options.quick) {
     how.longest = 1e-3;
     how.repetitions = 1;
   }
-  how.progress = [&](double part, const std::string& what) {
-    fmt::print(stderr, "\r\33[K{}: {:3.0f} % {}", embedded.name, 100 * part, what);
+  how.progress = [name](double part, const std::string& what) {
+    fmt::print(stderr, "\r\33[K{}: {:3.0f} % {}", name, 100 * part, what);
   };
-  wp.measured = measure(wp.contenders, wp.reference, how);
+  return how;
+}
+
+void draw_engines(const Options& options) {
+  const auto [scene, reference] = read_scene(engine_scene);
+  MeasureOptions how = how_to_measure("engines", options);
+  how.longest = std::min(how.longest, 0.1);  // there are a hundred settings
+  const EngineComparison with = compare_engines(scene, reference, true, how);
+  const EngineComparison without = compare_engines(scene, reference, false, how);
+  fmt::print(stderr, "\r\33[K");
+  write(options.root / "docs/charts/engines.svg", svg(engines_chart(with)));
+  write(options.root / "docs/charts/engines_frictionless.svg", svg(engines_chart(without)));
+  write(options.root / "bench/results/engines.json", io::text(document(with, without)));
+  for (const EngineComparison* comparison : {&with, &without}) {
+    for (const Engine& engine : engines()) {
+      if (engine.version.empty()) fmt::print("missing: {}\n", engine.name);
+      const std::vector<StepRatio> ratios = step_ratios(*comparison, engine);
+      const StepRatio* least = least_ratio(ratios);
+      if (least == nullptr) continue;
+      fmt::print(
+          "mu = {:g}: a step of {} is at least {:.1f} times as dear: {:.0f} ns ({}, {}; error {:.1e} at best), of "
+          "slideway {:.0f} ns ({}, error {:.1e})\n",
+          comparison->scene->guide[0].mu, engine.name, least->ratio(), least->engine_ns(),
+          least->engine->contender->family, least->engine->contender->name, least->least_error, least->kernel_ns(),
+          least->kernel->contender->family, least->kernel->error);
+    }
+  }
+}
+
+void draw(const EmbeddedScene& embedded, const Options& options) {
+  auto [scene, reference] = read_scene(embedded.name);
+  WorkPrecision wp{std::move(scene), std::move(reference), {}, {}};
+  const double interval = wp.reference.duration / oracle::reference_intervals;
+  embedded.add(interval, wp.contenders);
+  add_methods(io::RunStepper(wp.scene.scene), interval, ", run time", wp.contenders);
+  add_sundials(wp.scene.scene, wp.contenders);
+  wp.measured = measure(wp.contenders, wp.reference, how_to_measure(embedded.name, options));
   fmt::print(stderr, "\r\33[K");
   const fs::path charts = options.root / "docs/charts";
   write(charts / (embedded.name + "_time.svg"), svg(time_chart(wp)));
@@ -85,14 +123,13 @@ int run(int count, char** arguments) {
     } else if (std::strcmp(arguments[i], "--root") == 0 && i + 1 < count) {
       options.root = arguments[++i];
     } else {
-      options.scenes.emplace_back(arguments[i]);
+      options.names.emplace_back(arguments[i]);
     }
   }
   for (const EmbeddedScene& scene : embedded_scenes()) {
-    const bool wanted = options.scenes.empty() ||
-                        std::find(options.scenes.begin(), options.scenes.end(), scene.name) != options.scenes.end();
-    if (wanted) draw(scene, options);
+    if (options.wants(scene.name)) draw(scene, options);
   }
+  if (options.wants("engines")) draw_engines(options);
   return 0;
 }
 
