@@ -1,8 +1,9 @@
 // Draws docs/charts and writes bench/results.
 //
-//     draw_charts [--quick] [--root DIR] [SCENE...]
+//     draw_charts [--quick] [--root DIR] [NAME...]
 //
-// --quick: coarse settings alone, to see that everything still draws; nothing that it writes is for docs.
+// --quick: coarse settings alone, to see that everything still draws; nothing that it writes is for docs. NAME: a
+// scene, hlcp_kind, hlcp_hard.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 
 #include "embedded.hpp"
+#include "hlcp_charts.hpp"
 #include "kernel_contender.hpp"
 #include "work_precision.hpp"
 
@@ -23,7 +25,7 @@ namespace fs = std::filesystem;
 struct Options {
   bool quick = false;
   fs::path root = SLIDEWAY_SOURCE_DIR;
-  std::vector<std::string> scenes;
+  std::vector<std::string> names;
 };
 
 void write(const fs::path& file, const std::string& text) {
@@ -77,6 +79,24 @@ void draw(const EmbeddedScene& embedded, const Options& options) {
   }
 }
 
+void draw(HlcpBoard board, const Options& options) {
+  HlcpEffort effort;
+  if (options.quick) {
+    effort.cases = 4;
+    effort.repetitions = 1;
+    effort.least = 1e-4;
+    effort.most_exact = 4;
+  }
+  effort.progress = [&](double part, const std::string& what) {
+    fmt::print(stderr, "\r\33[K{}: {:3.0f} % {}", board.name, 100 * part, what);
+  };
+  board.measured = measure_hlcp(board.families(), effort);
+  fmt::print(stderr, "\r\33[K");
+  write(options.root / "docs/charts" / (board.name + ".svg"), svg(hlcp_chart(board)));
+  write(options.root / "bench/results" / (board.name + ".json"), io::text(document(board)));
+  for (const std::string& line : bars(board)) fmt::print("{}\n", line);
+}
+
 int run(int count, char** arguments) {
   Options options;
   for (int i = 1; i < count; ++i) {
@@ -85,13 +105,17 @@ int run(int count, char** arguments) {
     } else if (std::strcmp(arguments[i], "--root") == 0 && i + 1 < count) {
       options.root = arguments[++i];
     } else {
-      options.scenes.emplace_back(arguments[i]);
+      options.names.emplace_back(arguments[i]);
     }
   }
+  const auto wanted = [&](const std::string& name) {
+    return options.names.empty() || std::find(options.names.begin(), options.names.end(), name) != options.names.end();
+  };
   for (const EmbeddedScene& scene : embedded_scenes()) {
-    const bool wanted = options.scenes.empty() ||
-                        std::find(options.scenes.begin(), options.scenes.end(), scene.name) != options.scenes.end();
-    if (wanted) draw(scene, options);
+    if (wanted(scene.name)) draw(scene, options);
+  }
+  for (const HlcpBoard& board : hlcp_boards()) {
+    if (wanted(board.name)) draw(board, options);
   }
   return 0;
 }
