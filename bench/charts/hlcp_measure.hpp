@@ -33,8 +33,8 @@ inline constexpr char kernel_solver[] = "slideway";
 
 struct HlcpEffort {
   int cases = 16;
-  int repetitions = 9;
-  double least = 0.005;  ///< s, of a repetition
+  int repetitions = 15;
+  double least = 0.002;  ///< s, of a repetition
   int most_exact = 8;    ///< order up to which answers are held against the exact one
   std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };

@@ -17,7 +17,7 @@ class Collector final : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Iteration) continue;
-      ns[run.run_name.function_name].push_back(1e9 * run.real_accumulated_time / static_cast<double>(run.iterations));
+      ns[run.run_name.function_name].push_back(1e9 * run.cpu_accumulated_time / static_cast<double>(run.iterations));
       progress_(static_cast<double>(++seen_) / static_cast<double>(expected_));
     }
   }
@@ -38,7 +38,6 @@ void time_interleaved(std::vector<Timed>& all, int repetitions, double least,
                                  [&one](benchmark::State& state) {
                                    for (auto _ : state) one.run();
                                  })
-        ->UseRealTime()
         ->MinTime(least)
         ->Repetitions(repetitions);
   }

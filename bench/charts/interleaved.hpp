@@ -1,4 +1,5 @@
-// Times of things that are compared: repetitions in random turns, so that what else the machine does meets all alike.
+// Times of things that are compared: repetitions in random turns, so that what else the machine does meets all alike,
+// and the processor's time, not the clock's.
 #pragma once
 
 #include <functional>
