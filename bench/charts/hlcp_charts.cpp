@@ -29,22 +29,27 @@ const HlcpMeasured* find(const HlcpBoard& board, const std::string& family, int 
   return nullptr;
 }
 
-/// The geometric mean over the families of what a solve takes; 0 if the solver was not right in every problem.
-double mean_ns(const HlcpBoard& board, int n, const std::string& solver, bool warm) {
+/// Of one family, or of all where it is empty: the geometric mean of what a solve takes; 0 if the solver was not right
+/// in every problem.
+double mean_ns(const HlcpBoard& board, const std::string& only, int n, const std::string& solver, bool warm) {
   double logarithms = 0;
+  int families = 0;
   for (const HlcpFamily& family : board.families()) {
+    if (!only.empty() && family.name != only) continue;
     const HlcpMeasured* m = find(board, family.name, n, solver, warm);
     if (m == nullptr || m->ns == 0) return 0;
     logarithms += std::log(m->ns);
+    ++families;
   }
-  return std::exp(logarithms / static_cast<double>(board.families().size()));
+  return std::exp(logarithms / families);
 }
 
-/// Over all families and orders.
-Verdicts total(const HlcpBoard& board, const std::string& solver, bool warm) {
+/// Over all orders of one family, or of all.
+Verdicts total(const HlcpBoard& board, const std::string& only, const std::string& solver, bool warm) {
   Verdicts sum;
   for (const HlcpMeasured& m : board.measured) {
     if (m.solver != solver || m.warm != warm || !is_whole(board, m)) continue;
+    if (!only.empty() && m.family != only) continue;
     sum.right += m.verdicts.right;
     sum.refused += m.verdicts.refused;
     sum.wrong += m.verdicts.wrong;
@@ -52,7 +57,11 @@ Verdicts total(const HlcpBoard& board, const std::string& solver, bool warm) {
   return sum;
 }
 
+int count(const Verdicts& verdicts) { return verdicts.right + verdicts.refused + verdicts.wrong; }
+
+/// A line of the chart.
 struct Shown {
+  std::string family;  ///< empty: the mean over all
   std::string solver;
   bool warm;
   std::string name;
@@ -60,16 +69,37 @@ struct Shown {
 };
 
 /// Of Siconos' solvers those that differ; the numbers have all.
-std::vector<Shown> shown() {
-  return {{kernel_solver, true, "slideway, right signs", {0, 0, false}},
-          {kernel_solver, false, "slideway, from +", {1, 1, false}},
-          {lexicolemke, false, "lexicolemke", {7, 2, true}},
-          {"pivot, least index", false, "pivot, least index", {3, 3, true}},
-          {"pivot, Bard", false, "pivot, Bard", {2, 5, true}},
-          {"PGS", true, "PGS, near", {4, 4, true}},
-          {"Newton-min", false, "Newton-min", {5, 2, true}},
-          {"Newton-FB", true, "Newton-FB, near", {6, 4, true}},
-          {"enumeration", false, "enumeration", {6, 5, true}}};
+std::vector<Shown> solver_lines() {
+  return {{"", kernel_solver, true, "slideway, right signs", {0, 0, false}},
+          {"", kernel_solver, false, "slideway, from +", {1, 1, false}},
+          {"", lexicolemke, false, "lexicolemke", {7, 2, true}},
+          {"", "pivot, least index", false, "pivot, least index", {3, 3, true}},
+          {"", "pivot, Bard", false, "pivot, Bard", {2, 5, true}},
+          {"", "PGS", true, "PGS, near", {4, 4, true}},
+          {"", "Newton-min", false, "Newton-min", {5, 2, true}},
+          {"", "Newton-FB", false, "Newton-FB", {6, 4, true}},
+          {"", "enumeration", false, "enumeration", {6, 5, true}}};
+}
+
+/// The kernel and lexicolemke, family by family: what is hard for one is easy for another.
+std::vector<Shown> family_lines(const HlcpBoard& board) {
+  std::vector<Shown> lines;
+  for (const HlcpFamily& family : board.families()) {
+    const int place = static_cast<int>(lines.size() / 2);
+    lines.push_back({family.name, kernel_solver, false, family.name, {place, place, false}});
+    lines.push_back({family.name, lexicolemke, false, "lexicolemke", {place, place, true}});
+  }
+  return lines;
+}
+
+/// Whose success was none, in how many problems.
+std::string wrong_in_silence(const HlcpBoard& board) {
+  std::string who;
+  for (const LcpSolver& solver : lcp_solvers()) {
+    const int wrong = total(board, "", solver.name, false).wrong;
+    if (wrong > 0) who += fmt::format("{}{} {}", who.empty() ? "" : ", ", solver.name, wrong);
+  }
+  return who.empty() ? "nobody" : who;
 }
 
 io::Json json(const Verdicts& verdicts) {
@@ -97,8 +127,7 @@ std::string bar_line(const HlcpBoard& board, const std::string& family, int n, b
   } else if (theirs == nullptr) {
     verdict = "missing: Siconos";
   } else if (theirs->ns == 0) {
-    verdict = fmt::format("held: lexicolemke right in {} of {}", theirs->verdicts.right,
-                          theirs->verdicts.right + theirs->verdicts.refused + theirs->verdicts.wrong);
+    verdict = fmt::format("held: lexicolemke right in {} of {}", theirs->verdicts.right, count(theirs->verdicts));
   }
   return fmt::format("{:9s} {:16s} n = {:2d} {:11s} {:9.1f} ns {:9.1f} ns {:7.2f} x, at least {:4.1f}: {}", board.name,
                      family, n, warm ? "right signs" : "from +", ours != nullptr ? ours->ns : 0,
@@ -108,25 +137,27 @@ std::string bar_line(const HlcpBoard& board, const std::string& family, int n, b
 }  // namespace
 
 std::vector<HlcpBoard> hlcp_boards() {
-  return {{"hlcp_kind", "A+ x+ − A- x- = b as mechanisms give it", kind_families, {}},
-          {"hlcp_hard", "Murty, Fathi, cycles: LCPs that are hard for pivots", hard_families, {}}};
+  return {{"hlcp_kind", "A+ x+ − A− x− = b as mechanisms give it", kind_families, false, {}},
+          {"hlcp_hard", "Hard LCPs: slideway from +, and lexicolemke", hard_families, true, {}}};
 }
 
 Chart hlcp_chart(const HlcpBoard& board) {
   Chart chart;
   chart.title = board.title;
-  chart.subtitle = lcp_solvers().empty() ? "missing: Siconos" : "(right / refused / wrong in silence); dashed: Siconos";
+  chart.subtitle = lcp_solvers().empty() ? "missing: Siconos"
+                                         : fmt::format("dashed: Siconos; (right / refused / wrong in silence: {})",
+                                                       wrong_in_silence(board));
   chart.x = {"order n", 1.8, 36, true};
   double least = HUGE_VAL, most = 0;
-  for (const Shown& one : shown()) {
-    const Verdicts verdicts = total(board, one.solver, one.warm);
-    if (verdicts.right + verdicts.refused + verdicts.wrong == 0) continue;
+  for (const Shown& one : board.by_family ? family_lines(board) : solver_lines()) {
+    const Verdicts verdicts = total(board, one.family, one.solver, one.warm);
+    if (count(verdicts) == 0) continue;
     Line line{fmt::format("{} ({} / {} / {})", one.name, verdicts.right, verdicts.refused, verdicts.wrong),
               one.style,
               {},
               {}};
     for (const int n : hlcp_orders) {
-      const double ns = mean_ns(board, n, one.solver, one.warm);
+      const double ns = mean_ns(board, one.family, n, one.solver, one.warm);
       if (ns == 0) continue;
       line.points.push_back({static_cast<double>(n), ns});
       least = std::min(least, ns);
@@ -150,8 +181,8 @@ io::Json document(const HlcpBoard& board) {
   for (const LcpSolver& solver : lcp_solvers()) solvers.push_back(solver.name);
   for (const std::string& solver : solvers) {
     for (const bool warm : {false, true}) {
-      const Verdicts verdicts = total(board, solver, warm);
-      if (verdicts.right + verdicts.refused + verdicts.wrong == 0) continue;
+      const Verdicts verdicts = total(board, "", solver, warm);
+      if (count(verdicts) == 0) continue;
       io::Json row = {{"solver", solver}, {"warm", warm}};
       row.update(json(verdicts));
       all["counts"].push_back(row);

@@ -12,13 +12,14 @@ namespace slideway::charts {
 struct HlcpBoard {
   std::string name, title;
   const std::vector<HlcpFamily>& (*families)();
+  bool by_family;  ///< a line for each family, of the kernel and of lexicolemke; else for each solver
   std::vector<HlcpMeasured> measured;
 };
 
 /// "hlcp_kind" and "hlcp_hard", not yet measured.
 std::vector<HlcpBoard> hlcp_boards();
 
-/// Times over orders: geometric means over the families, of solvers that are right in every problem of an order.
+/// Times over orders, of solvers that are right in every problem of an order; of each family, or their geometric means.
 Chart hlcp_chart(const HlcpBoard& board);
 io::Json document(const HlcpBoard& board);
 /// By how much the kernel has to be faster than lexicolemke, and is: a line each.

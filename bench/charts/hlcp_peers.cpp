@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 #ifdef SLIDEWAY_SICONOS
 #include <LCP_Solvers.h>
@@ -64,6 +64,11 @@ class Dense final : public LcpPeer {
     problem_ = {n, NM_create_from_data(NM_DENSE, n, n, m.data()), q.data()};
   }
   bool solve() override {
+    if (std::all_of(q.begin(), q.end(), [](double x) { return x >= 0; })) {  // as Siconos' driver does
+      std::fill(z.begin(), z.end(), 0);
+      w = q;
+      return true;
+    }
     int info = 1;
     call_(&problem_, z.data(), w.data(), &info, options_);
     return info == 0;
