@@ -121,21 +121,21 @@ inline void accept_pair(HlcpSolution<Capacity>& solution, Pair x, Word negative0
   solution.residual = residual;
 }
 
-/// n = 2 when the first signs were not the solution's: at most three more trials; by the W-property they suffice, ties
-/// apart.
+/// n = 2 when the first trial, with this x, was not the solution's: at most three more, while signs change; by the
+/// W-property they suffice, ties apart.
 template <int Capacity>
-[[gnu::noinline]] void solve_pair_again(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& solution,
+[[gnu::noinline]] void solve_pair_again(const Hlcp<Capacity>& problem, Pair x, HlcpSolution<Capacity>& solution,
                                         HlcpOptions options) noexcept {
+  if (problem.b[0] == 0.0 && problem.b[1] == 0.0) return accept_pair(solution, Pair{0.0, 0.0}, 0, 0, 1, 0.0);
   Word negative[2] = {mask_of(solution.sign[0]), mask_of(solution.sign[1])};
-  for (int solves = 1; solves <= 4; ++solves) {
-    const PairTrial trial = try_pair(problem, row_sizes(problem), negative[0], negative[1]);
-    if (problem.b[0] == 0.0 && problem.b[1] == 0.0) return accept_pair(solution, Pair{0.0, 0.0}, 0, 0, solves, 0.0);
-    if (trial.clear) {
-      if (!trial.accurate) break;
-      return accept_pair(solution, trial.x, negative[0], negative[1], solves, trial.residual);
-    }
-    negative[0] = Word{0} - (bits(trial.x[0]) >> 63);
-    negative[1] = Word{0} - (bits(trial.x[1]) >> 63);
+  for (int solves = 2; solves <= 4; ++solves) {
+    const Word next[2] = {Word{0} - (bits(x[0]) >> 63), Word{0} - (bits(x[1]) >> 63)};
+    if (next[0] == negative[0] && next[1] == negative[1]) break;
+    const PairTrial trial = try_pair(problem, row_sizes(problem), next[0], next[1]);
+    if (trial.clear && trial.accurate) return accept_pair(solution, trial.x, next[0], next[1], solves, trial.residual);
+    x = trial.x;
+    negative[0] = next[0];
+    negative[1] = next[1];
   }
   solve_with_care(problem, 2, solution, options, 1);
 }
@@ -152,8 +152,60 @@ template <int Capacity>
   const PairTrial trial = try_pair(problem, sizes, negative0, negative1);
   const bool usual = pair_has_w_property(problem, sizes);
   if (__builtin_expect(!usual, 0)) return solve_with_care(problem, 2, solution, options, 0);
-  if (__builtin_expect(!(trial.clear && trial.accurate), 0)) return solve_pair_again(problem, solution, options);
+  if (__builtin_expect(!(trial.clear && trial.accurate), 0))
+    return solve_pair_again(problem, trial.x, solution, options);
   accept_pair(solution, trial.x, negative0, negative1, 1, trial.residual);
+}
+
+/// The signs of x into `signs`; false where one of them rests on rounding.
+template <class Count>
+inline bool take_clear_signs(const double* x, Count n, signed char* signs) noexcept {
+  double largest = 0.0;
+  double least = HUGE_VAL;
+  for (int k = 0; k < n; ++k) {
+    const double size = std::fabs(x[k]);
+    largest = size > largest ? size : largest;
+    least = size < least ? size : least;
+    signs[k] = static_cast<signed char>(x[k] < 0.0 ? -1 : 1);
+  }
+  return least > tie_window * largest;
+}
+
+/// Takes the trial's x if it is certified, or for n > 4 if it is accurate. Requires clear signs.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline bool accept_trial(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial,
+                                                const signed char* signs, int solves,
+                                                HlcpSolution<Capacity>& solution) noexcept {
+  const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, n, trial);
+  if (!proven && n <= decidable) return false;
+  for (int k = 0; k < n; ++k) solution.x[k] = trial.x[k] + 0.0;  // -0 becomes 0
+  for (int k = 0; k < n; ++k) solution.sign[k] = static_cast<signed char>(signs[k] == -1 && trial.x[k] != 0.0 ? -1 : 1);
+  report(solution, Status::ok, proven ? Uniqueness::certified : Uniqueness::unproven, solves, trial.residual);
+  return true;
+}
+
+/// n >= 3 when the first trial's signs were not the solution's: the signs that came out are tried next, then those that
+/// come out there (iterate_signs() on the problem as given, and only while all is clear). What that does not settle
+/// starts again with care.
+template <int Capacity, class Count>
+[[gnu::noinline]] void solve_many_again(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial,
+                                        HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
+  signed char signs[Capacity];
+  Word seen[Capacity + 4] = {code_of(solution.sign, n)};
+  int solves = 1;
+  while (solves < n + 4 && solves < options.max_solves && take_clear_signs(trial.x, n, signs)) {
+    const Word code = code_of(signs, n);
+    bool repeats = false;
+    for (int k = 0; k < solves; ++k) repeats = repeats || seen[k] == code;
+    if (repeats) break;
+    seen[solves++] = code;
+    if (!factor_and_solve(problem, n, signs, trial)) break;
+    if (!clear(trial.x, n, signs)) continue;
+    check(problem, n, trial);
+    if (trial.accurate && accept_trial(problem, n, trial, signs, solves, solution)) return;
+    break;
+  }
+  solve_with_care(problem, static_cast<int>(n), solution, options, solves);
 }
 
 /// n >= 3: one trial, and nothing more if the signs were right and the certificate holds.
@@ -161,14 +213,9 @@ template <int Capacity, class Count>
 [[gnu::noinline]] void solve_many(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                                   HlcpOptions options) noexcept {
   Trial<Capacity> trial;
-  if (attempt(problem, n, solution.sign, trial) && clear(trial.x, n, solution.sign)) {
-    const bool proven = (n <= 16 && trial.reach <= contracting) || proves(problem, n, trial);
-    if (proven || n > decidable) {
-      for (int k = 0; k < n; ++k) solution.x[k] = trial.x[k] + 0.0;  // -0 becomes 0
-      for (int k = 0; k < n; ++k)
-        solution.sign[k] = static_cast<signed char>(solution.sign[k] == -1 && trial.x[k] != 0.0 ? -1 : 1);
-      return report(solution, Status::ok, proven ? Uniqueness::certified : Uniqueness::unproven, 1, trial.residual);
-    }
+  if (attempt(problem, n, solution.sign, trial)) {
+    if (!clear(trial.x, n, solution.sign)) return solve_many_again(problem, n, trial, solution, options);
+    if (accept_trial(problem, n, trial, solution.sign, 1, solution)) return;
   }
   solve_with_care(problem, static_cast<int>(n), solution, options, 1);
 }

@@ -461,10 +461,10 @@ inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed cha
   return trial.accurate;
 }
 
-/// Solves with W(signs), n >= 1. Returns whether data in range gave a regular matrix and an accurate x.
+/// Factors W(signs), n >= 3, and solves: x, not yet checked. Returns whether data in range gave a regular matrix.
 template <int Capacity, class Count>
-inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
-  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
+inline bool factor_and_solve(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
+                             Trial<Capacity>& trial) noexcept {
   trial.regular = trial.accurate = false;
   if (!select(problem, n, signs, trial)) return false;
   const double least = eliminate(trial, n);
@@ -473,6 +473,14 @@ inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* s
   if (!trial.regular) return false;
   SLIDEWAY_CLAIM(reproduces(trial, n));
   substitute(trial, n);
+  return true;
+}
+
+/// Solves with W(signs), n >= 1. Returns whether data in range gave a regular matrix and an accurate x.
+template <int Capacity, class Count>
+inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
+  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
+  if (!factor_and_solve(problem, n, signs, trial)) return false;
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
   return trial.accurate;

@@ -71,7 +71,7 @@ void fill_textbook(Choices& choices, HlcpCase& problem) {
       double& entry = m[i * n + j];
       if (which == 0) entry = j < i ? 2 : j == i ? 1 : 0;                     // Murty
       if (which == 1) entry = j > i ? 2 : j == i ? 1 : 0;                     // its transpose
-      if (which == 2) entry = 2 * (i < j ? i : j) + (i == j ? 1 : 2);         // Fathi: M M' of Murty's, rows from 0
+      if (which == 2) entry = 4 * (i < j ? i : j) + (i == j ? 1 : 2);         // Fathi: M M' of Murty's, rows from 0
       if (which == 3) entry = j == i ? 1 : j == (i + 1) % n ? 2 : 0;          // Kostreva, of any order
       if (which == 4) entry = j == i ? 1 : j == (i + n - 1) % n ? 1.125 : 0;  // sign iteration cycles (n = 3)
       if (which == 5) entry = j == i ? 1 : j == (i + 1) % n ? -1 : 0;         // singular: rows add up to nothing
