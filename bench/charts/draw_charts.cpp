@@ -1,7 +1,8 @@
 // Draws docs/charts and writes bench/results.
 //
-//     draw_charts [--quick] [--root DIR] [SCENE...]
+//     draw_charts [--quick] [--root DIR] [NAME...]
 //
+// NAME: a scene, growth (of scenes) or detail (of one scene); all if none is given.
 // --quick: coarse settings alone, to see that everything still draws; nothing that it writes is for docs.
 #include <fmt/format.h>
 
@@ -11,7 +12,9 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "detail.hpp"
 #include "embedded.hpp"
+#include "growth.hpp"
 #include "kernel_contender.hpp"
 #include "work_precision.hpp"
 
@@ -23,7 +26,7 @@ namespace fs = std::filesystem;
 struct Options {
   bool quick = false;
   fs::path root = SLIDEWAY_SOURCE_DIR;
-  std::vector<std::string> scenes;
+  std::vector<std::string> names;
 };
 
 void write(const fs::path& file, const std::string& text) {
@@ -77,6 +80,31 @@ void draw(const EmbeddedScene& embedded, const Options& options) {
   }
 }
 
+/// Progress of a figure on a terminal.
+std::function<void(double, const std::string&)> progress_of(const std::string& name) {
+  return [name](double part, const std::string& what) {
+    fmt::print(stderr, "\r\33[K{}: {:3.0f} % {}{}", name, 100 * part, what, part < 1 ? "" : "\r\33[K");
+  };
+}
+
+void draw_growth(const Options& options) {
+  const std::vector<Growth> growth = measure_growth(options.quick ? 1 : 7, progress_of("growth"));
+  write(options.root / "docs/charts/growth.svg", svg(growth_chart(growth)));
+  write(options.root / "docs/charts/growth_memory.svg", svg(memory_chart(growth)));
+  write(options.root / "bench/results/growth.json", io::text(document(growth)));
+}
+
+void draw_detail(const Options& options) {
+  io::Json json{{"format", io::json_format}, {"machines", io::Json::array()}};
+  for (const Machine& machine : {driven_machine(), undriven_machine()}) {
+    const std::vector<Detail> details = measure_detail(machine, options.quick ? 1 : 7, progress_of("detail"));
+    const std::string name = fmt::format("detail_{}.svg", machine.name);
+    write(options.root / "docs/charts" / name, svg(detail_chart(machine, details)));
+    json["machines"].push_back(document(machine, details));
+  }
+  write(options.root / "bench/results/detail.json", io::text(json));
+}
+
 int run(int count, char** arguments) {
   Options options;
   for (int i = 1; i < count; ++i) {
@@ -85,14 +113,17 @@ int run(int count, char** arguments) {
     } else if (std::strcmp(arguments[i], "--root") == 0 && i + 1 < count) {
       options.root = arguments[++i];
     } else {
-      options.scenes.emplace_back(arguments[i]);
+      options.names.emplace_back(arguments[i]);
     }
   }
+  const auto is_wanted = [&](const std::string& name) {
+    return options.names.empty() || std::find(options.names.begin(), options.names.end(), name) != options.names.end();
+  };
   for (const EmbeddedScene& scene : embedded_scenes()) {
-    const bool wanted = options.scenes.empty() ||
-                        std::find(options.scenes.begin(), options.scenes.end(), scene.name) != options.scenes.end();
-    if (wanted) draw(scene, options);
+    if (is_wanted(scene.name)) draw(scene, options);
   }
+  if (is_wanted("growth")) draw_growth(options);
+  if (is_wanted("detail")) draw_detail(options);
   return 0;
 }
 
