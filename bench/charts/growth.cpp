@@ -111,7 +111,7 @@ std::vector<Growth> measure_growth(int repetitions, const std::function<void(dou
 
 double exponent(const std::vector<Growth>& growth, const std::string& family, int from, int to) {
   const Growth *a = find(growth, family, from), *b = find(growth, family, to);
-  if (a == nullptr || b == nullptr) return NAN;
+  if (a == nullptr || b == nullptr) return std::nan("");
   return std::log(b->ns / a->ns) / std::log(static_cast<double>(to) / from);
 }
 
@@ -126,7 +126,7 @@ Chart growth_chart(const std::vector<Growth>& growth) {
       add_point(chart, line, g, g.ns);
       last = g.sliders;
     }
-    const double slope = last > 8 ? exponent(growth, family, 8, last) : NAN;
+    const double slope = last > 8 ? exponent(growth, family, 8, last) : std::nan("");
     if (!std::isnan(slope)) line.name += fmt::format(" ({:.2f})", slope);
     chart.lines.push_back(std::move(line));
   }
