@@ -10,9 +10,24 @@
 
 namespace slideway::charts {
 
-/// The slider is a point on the body that carries it: it no longer turns on that, so its inertia is left out, too.
+/// Room for three bodies of which the last does not turn on the one that carries it.
+template <int drives>
+using PointSize = Size<3, 2, 1, 1, drives, 0, 0, 0, 0, 0>;
+
+/// The slider, the last of three bodies in a tree, is a point on the body that carries it: it no longer turns on that,
+/// so its inertia is left out, too.
 template <class Size>
-constexpr Scene<Size> with_point_slider(Scene<Size> scene) {
+constexpr auto with_point_slider(const Scene<Size>& tree) {
+  Scene<PointSize<Size::drives>> scene;
+  scene.gravity = tree.gravity;
+  scene.alpha = tree.alpha;
+  scene.beta = tree.beta;
+  scene.bodies = tree.bodies;
+  scene.guides = tree.guides;
+  scene.drives = tree.drives;
+  for (int i = 0; i < tree.bodies; ++i) scene.body[i] = tree.body[i];
+  scene.guide[0] = tree.guide[0];
+  if (tree.drives > 0) scene.drive[0] = tree.drive[0];
   Guide& guide = scene.guide[0];
   Body& slider = scene.body[guide.slider];
   slider.joint = Joint::fixed;
