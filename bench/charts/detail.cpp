@@ -55,21 +55,26 @@ Chart detail_chart(const Machine& machine, const std::vector<Detail>& details) {
   for (const Detail& d : details) {
     const double shown = std::max(d.largest(), least_shown);
     chart.lines.push_back({fmt::format("{}  {}", letter, d.model), d.style, {{d.ns, shown}}, {{d.low, d.high}}});
-    chart.notes.push_back({{d.ns * 1.05, shown * 1.6}, std::string(1, letter++)});
+    // Every other one below its marker, so that neighbours' letters do not meet.
+    const bool below = (letter - 'a') % 2 == 1;
+    chart.notes.push_back({{d.ns * 1.05, below ? shown / 10 : shown * 1.6}, std::string(1, letter++)});
     cheapest = std::min(cheapest, d.low);
     dearest = std::max(dearest, d.high);
   }
   chart.x = {"ns a step", power_below(cheapest), power_above(dearest), true};
-  chart.y = {"difference of places, forces, torque", least_shown, 10, true};
+  chart.y = {machine.driven ? "difference of places, forces, torque" : "difference of places and forces",
+             least_shown / 100, 10, true};
   return chart;
 }
 
 io::Json document(const Machine& machine, const std::vector<Detail>& details) {
   io::Json json{{"scene", machine.name}, {"steps", machine.steps}, {"dt", machine.dt}};
   for (const Detail& d : details) {
-    json["models"].push_back({{"model", d.model},
-                              {"ns_per_step", {{"median", d.ns}, {"least", d.low}, {"most", d.high}}},
-                              {"difference", {{"place", d.place}, {"normal", d.normal}, {"torque", d.torque}}}});
+    io::Json one{{"model", d.model},
+                 {"ns_per_step", {{"median", d.ns}, {"least", d.low}, {"most", d.high}}},
+                 {"difference", {{"place", d.place}, {"normal", d.normal}}}};
+    if (machine.driven) one["difference"]["torque"] = d.torque;
+    json["models"].push_back(std::move(one));
   }
   return json;
 }

@@ -25,6 +25,7 @@ struct Model {
 /// A machine and its models, the most detailed first.
 struct Machine {
   std::string name;  ///< of the scene
+  bool driven;
   int steps;
   double dt;                              ///< s
   std::function<Answer()> most_detailed;  ///< of the first model, solved far more accurately than any run

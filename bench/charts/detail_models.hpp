@@ -5,6 +5,7 @@
 #include <memory>
 #include <slideway/step.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "detail.hpp"
 
@@ -130,8 +131,11 @@ std::shared_ptr<Stepper<scene>> compile_time() {
   return std::make_shared<Stepper<scene>>();
 }
 
-/// Colours: coordinates and contacts. Markers: method and friction.
-inline constexpr int planar_colour = 1, two_contacts_colour = 0, point_colour = 2;
-inline constexpr int integrated_marker = 0, kinematic_marker = 2, smooth_marker = 4;
+// Colours tell coordinates and contacts.
+constexpr Style planar(int marker) { return {1, marker, false}; }
+constexpr Style two_contacts(int marker) { return {0, marker, false}; }
+constexpr Style point(int marker) { return {2, marker, false}; }
+// Markers tell the rest.
+inline constexpr int integrated = 0, known = 5, by_kinematics = 2, known_kinematics = 3, smooth = 4;
 
 }  // namespace slideway::charts
