@@ -20,8 +20,6 @@ using Scene = slideway::Scene<io::RunSize>;
 constexpr int most_steps = 1000;
 /// A change of the answer below this is hardly missed: masses and mu are seldom known better.
 constexpr double hardly = 1e-3;
-/// Where theory says that nothing changes: drift, and what rk4 makes of it.
-constexpr double nothing = 1e-6;
 
 /// Moves the origin of a body's frame to a point of it, in all that refers to that frame.
 void move_origin(Scene& scene, int body, Vec2 to) {
@@ -108,27 +106,14 @@ class Trials {
              change->words, cost(scene_, plan))});
   }
 
-  /// Bodies that turn at a constant rate, whatever happens: about their centre, inertia has no moment to ask for.
+  /// Bodies that drives alone turn: at a constant rate, inertia asks for no moment.
   void try_without_inertia(int i) {
-    if (scene_.body[i].inertia == 0 || !table_.turning[i] || table_.freely_turning[i] || !is_uniform(i)) return;
+    if (scene_.body[i].inertia == 0 || !table_.turning[i] || table_.freely_turning[i]) return;
     Scene edited = scene_;
     edited.body[i].inertia = 0;
-    if (const auto change = tried(edited, plan_, nothing))
-      remarks_.push_back({Item::body, i, "turns at the constant rate of its drive: with inertia = 0 " + change->words});
-  }
-
-  bool is_uniform(int i) const {
-    for (int body = i; body != ground; body = scene_.body[body].parent) {
-      for (int k = 0; k < coordinates(scene_.body[body].joint); ++k) {
-        const int j = table_.first[body] + k;
-        if (table_.motion[j] != Motion::turn) continue;
-        const Drive& drive = scene_.drive[table_.drive_of[j]];
-        const bool line = drive.law == Law::polynomial &&
-                          std::all_of(drive.c + 2, drive.c + std::max(2, drive.terms), [](double c) { return c == 0; });
-        if (drive.law != Law::uniform && !line) return false;
-      }
-    }
-    return true;
+    if (const auto change = tried(edited, plan_, hardly))
+      remarks_.push_back(
+          {Item::body, i, "is turned by drives alone, and its inertia does little: with inertia = 0 " + change->words});
   }
 
   /// Sliders that turn on the body which carries them, each for the sake of one guide with two contacts: are points

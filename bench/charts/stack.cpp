@@ -22,9 +22,7 @@ struct Free {
   void operator()(unsigned char* memory) const { std::free(memory); }
 };
 
-}  // namespace
-
-std::size_t stack_of(const std::function<void()>& call) {
+std::size_t touched_by(const std::function<void()>& call) {
   const std::unique_ptr<unsigned char, Free> memory(static_cast<unsigned char*>(std::aligned_alloc(page, stack_room)));
   if (!memory) throw std::bad_alloc();
   std::fill_n(memory.get(), stack_room, untouched);
@@ -40,6 +38,12 @@ std::size_t stack_of(const std::function<void()>& call) {
   const unsigned char* end = memory.get() + stack_room;
   return static_cast<std::size_t>(
       end - std::find_if(memory.get(), memory.get() + stack_room, [](unsigned char c) { return c != untouched; }));
+}
+
+}  // namespace
+
+std::size_t stack_of(const std::function<void()>& call) {
+  return touched_by(call) - touched_by([] {});
 }
 
 }  // namespace slideway::charts

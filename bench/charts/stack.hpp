@@ -6,8 +6,8 @@
 
 namespace slideway::charts {
 
-/// Bytes of stack that a call takes, with the 1 KiB or so that a thread's own start does: run in a thread whose stack
-/// was filled with a pattern, and read where that is left.
+/// Bytes of stack that a call takes: run in a thread whose stack was filled with a pattern, and read where that is left;
+/// less what a call that does nothing takes there.
 std::size_t stack_of(const std::function<void()>& call);
 
 }  // namespace slideway::charts
