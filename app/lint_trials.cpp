@@ -8,7 +8,6 @@
 #include <optional>
 #include <slideway/structure.hpp>
 
-#include "preparation.hpp"
 #include "trial.hpp"
 
 namespace slideway::app {
@@ -45,13 +44,11 @@ void move_origin(Scene& scene, int body, Vec2 to) {
 class Trials {
  public:
   explicit Trials(const io::SceneFile& file) : scene_(file.scene), table_(derive(file.scene)) {
-    const Plan plan(file.run.duration, file.run.dt);
     plan_.method =
         *std::find_if(std::begin(methods), std::end(methods), [&](Method m) { return file.run.method == name(m); });
-    plan_.dt = plan.dt;
-    plan_.steps = static_cast<int>(std::min<long long>(most_steps, plan.steps));
-    if (scene_.inputs > 0) return;
-    whole_ = run_trial(scene_, plan_);
+    plan_.dt = std::fmin(file.run.dt, file.run.duration);
+    plan_.steps = static_cast<int>(std::fmin(most_steps, std::round(file.run.duration / plan_.dt)));
+    if (scene_.inputs == 0) whole_ = run_trial(scene_, plan_);
     plan_.steps = whole_.steps;
   }
 
@@ -66,18 +63,18 @@ class Trials {
   }
 
  private:
-  /// A trial of an edited scene that changes the answer by at most `limit`, and what it changes in words.
+  /// A trial of an edited scene that hardly changes the answer, and what it changes in words.
   struct Change {
     Trial trial;
     std::string words;
   };
-  std::optional<Change> tried(const Scene& edited, const TrialPlan& plan, double limit,
+  std::optional<Change> tried(const Scene& edited, const TrialPlan& plan,
                               const std::vector<int>& without_turn = {}) const {
     if (defects(edited).count > 0) return std::nullopt;
     Change change{run_trial(edited, plan), {}};
     if (change.trial.steps < plan.steps) return std::nullopt;
     const Apart by = apart(whole_, change.trial, without_turn);
-    if (!(by.largest() <= limit)) return std::nullopt;
+    if (!(by.largest() <= hardly)) return std::nullopt;
     change.words = fmt::format("places change by {:.2g} of the scene's length", by.places);
     if (scene_.guides > 0) change.words += fmt::format(", forces of guides by {:.2g} of the largest", by.contacts);
     if (scene_.drives > 0) change.words += fmt::format(", of drives by {:.2g}", by.drives);
@@ -95,7 +92,7 @@ class Trials {
     if (!fully_driven || plan_.method == Method::kinematic) return;
     TrialPlan plan = plan_;
     plan.method = Method::kinematic;
-    const auto change = tried(scene_, plan, hardly);
+    const auto change = tried(scene_, plan);
     if (!change) return;
     remarks_.push_back(
         {Item::scene, 0,
@@ -111,7 +108,7 @@ class Trials {
     if (scene_.body[i].inertia == 0 || !table_.turning[i] || table_.freely_turning[i]) return;
     Scene edited = scene_;
     edited.body[i].inertia = 0;
-    if (const auto change = tried(edited, plan_, hardly))
+    if (const auto change = tried(edited, plan_))
       remarks_.push_back(
           {Item::body, i, "is turned by drives alone, and its inertia does little: with inertia = 0 " + change->words});
   }
@@ -138,7 +135,7 @@ class Trials {
       guide.contact[0] = {};
       sliders.push_back(guide.slider);
     }
-    const auto change = tried(edited, plan_, hardly, sliders);
+    const auto change = tried(edited, plan_, sliders);
     if (!change) return false;
     const std::size_t more = guides.size() - 1;
     remarks_.push_back(
@@ -183,7 +180,7 @@ class Trials {
     if (!(guide.mu_static > 0)) return;
     Scene edited = scene_;
     edited.guide[g].mu = edited.guide[g].mu_static = 0;
-    const auto change = tried(edited, plan_, hardly);
+    const auto change = tried(edited, plan_);
     if (!change) return;
     remarks_.push_back({Item::guide, g,
                         fmt::format("has friction that does little, {:.2g} J of {:.2g} J in play: with mu = 0 {}; {}",
@@ -213,7 +210,7 @@ class Trials {
     turning.v[0] = of_body.rate - of_other.rate;
     std::copy(edited.pin + p + 1, edited.pin + edited.pins, edited.pin + p);
     --edited.pins;
-    if (const auto change = tried(edited, plan_, hardly)) {
+    if (const auto change = tried(edited, plan_)) {
       remarks_.push_back(
           {Item::pin, p,
            fmt::format("holds a planar body that could turn on a revolute joint there, with two coordinates "

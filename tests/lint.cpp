@@ -170,6 +170,17 @@ rate = 2.0
   EXPECT_FALSE(is_advised("squeezer", "pin 'b'", "revolute joint")) << "it closes a loop of a tree";
 }
 
+TEST_F(Lint, TriesNothingWhereLiveInputsWouldHaveToBeGuessed) {
+  write(tmp / "pushed.toml", read(SLIDEWAY_SOURCE_DIR "/scenes/slider_crank_driven.toml") + R"(
+[[load]]
+body = "rod"
+torque = 1.0
+input = "push"
+)");
+  EXPECT_TRUE(advice("pushed.toml", "guide 'way'").empty());
+  EXPECT_TRUE(advice("pushed.toml", "scene").empty());
+}
+
 TEST_F(Lint, TriesNothingWhereTheFirstStepIsRefused) {
   const std::string jam = "slider_crank_equal --set guide.way.mu=30";
   ASSERT_EQ(slideway("run " + jam + " --quiet", tmp).status, 1);
