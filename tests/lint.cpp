@@ -59,6 +59,8 @@ TEST_F(Lint, TellsTheDriftOfBothMethods) {
 TEST_F(Lint, NamesInertiaThatADriveTurnsAtAConstantRate) {
   EXPECT_TRUE(is_advised("slider_crank_driven", "body 'crank'", "inertia does little"));
   EXPECT_FALSE(is_advised("slider_crank_driven", "body 'rod'", "inertia does little"));
+  EXPECT_FALSE(is_advised("slider_crank_driven", "body 'slider'", "inertia does little"))
+      << "free to turn, it does not";
   EXPECT_FALSE(is_advised("crank_rocker_free", "body 'crank'", "inertia does little"));
 }
 
