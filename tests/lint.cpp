@@ -80,6 +80,7 @@ law = "polynomial"
 coefficients = [0.0, 1.0, 0.5]
 )");
   EXPECT_FALSE(is_advised("wheel.toml", "body 'crank'", "inertia does little"));
+  EXPECT_TRUE(is_advised("wheel.toml --set body.crank.inertia=1e-6", "body 'crank'", "inertia does little"));
   EXPECT_TRUE(
       is_advised("wheel.toml --set 'drive.motor.coefficients=[0.0, 1.0]'", "body 'crank'", "inertia does little"));
 }
