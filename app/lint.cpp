@@ -4,6 +4,7 @@
 #include <slideway/io/json.hpp>
 #include <slideway/structure.hpp>
 
+#include "lint_trials.hpp"
 #include "messages.hpp"
 #include "output.hpp"
 #include "scene_source.hpp"
@@ -11,12 +12,6 @@
 
 namespace slideway::app {
 namespace {
-
-struct Remark {
-  Item item;
-  int index;
-  std::string message;
-};
 
 /// The rules. Each is a statement that follows from the scene's structure, not from numbers that a start pose happens
 /// to have.
@@ -161,7 +156,8 @@ int lint(const LintOptions& options) {
   if (!file) return bad_input;
   Output json(options.json);
   if (!open_all({&json}, options.scene.scene)) return bad_input;
-  const std::vector<Remark> remarks = Linter(*file).remarks();
+  std::vector<Remark> remarks = Linter(*file).remarks();
+  for (Remark& tried : remarks_by_trial(*file, remarks)) remarks.push_back(std::move(tried));
   std::FILE* const out = json.standard() ? stderr : stdout;
   for (const Remark& remark : remarks) {
     const std::string message = file->title(remark.item, remark.index) + " " + remark.message;

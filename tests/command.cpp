@@ -340,7 +340,7 @@ TEST_F(Command, ProjectStartMovesTheStartOntoTheConstraints) {
 }
 
 TEST_F(Command, LintFindsWhatASceneDoesNotNeed) {
-  const json clean = json::parse(slideway("lint crank_rocker_free --json -").out);
+  const json clean = json::parse(slideway("lint elliptic_trammel --json -").out);
   EXPECT_TRUE(clean["findings"].empty());
   const Result result = slideway("lint superfluous.toml --json $TMP/lint.json");
   EXPECT_EQ(result.status, 0) << result.err;
