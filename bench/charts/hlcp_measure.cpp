@@ -10,7 +10,7 @@
 #include <slideway/oracle/hlcp.hpp>
 
 #include "hlcp_peers.hpp"
-#include "interleaved.hpp"
+#include "timing.hpp"
 
 namespace slideway::charts {
 namespace {
@@ -107,15 +107,15 @@ class Arena {
   }
 
   /// Appends what is measured, and what has still to be timed.
-  void enter(std::vector<HlcpMeasured>& measured, std::vector<Timed>& timed) {
-    enter_kernel(measured, timed);
+  void enter(std::vector<HlcpMeasured>& measured, std::vector<Run>& runs) {
+    enter_kernel(measured, runs);
     for (const LcpSolver& solver : lcp_solvers()) {
       if (N > solver.most_order) continue;
       for (const bool warm : {false, true}) {
         if (warm && !(solver.takes_start && all_solved_)) continue;
         for (const Conversion conversion : {Conversion::none, Conversion::of_theirs}) {
           if (conversion == Conversion::of_theirs && family_.is_lcp) continue;
-          enter_peer(solver, warm, conversion, measured, timed);
+          enter_peer(solver, warm, conversion, measured, runs);
         }
       }
     }
@@ -124,7 +124,7 @@ class Arena {
   static constexpr int solves(std::size_t cases) { return static_cast<int>(cases) * stages; }
 
  private:
-  void enter_kernel(std::vector<HlcpMeasured>& measured, std::vector<Timed>& timed) {
+  void enter_kernel(std::vector<HlcpMeasured>& measured, std::vector<Run>& runs) {
     for (const bool warm : {false, true}) {  // the cold answers' signs are right
       HlcpMeasured m{family_.name, N, kernel_solver, warm, Conversion::none, {}};
       for (std::size_t k = 0; k < problems_.size(); ++k) {
@@ -137,13 +137,13 @@ class Arena {
       }
       all_solved_ = m.verdicts.right == static_cast<int>(problems_.size());
       if (all_solved_)
-        timed.push_back({name_of(m), [this, warm] { warm ? kernel_sweep<true>() : kernel_sweep<false>(); }});
+        runs.push_back({name_of(m), [this, warm] { warm ? kernel_sweep<true>() : kernel_sweep<false>(); }});
       measured.push_back(m);
     }
   }
 
   void enter_peer(const LcpSolver& solver, bool warm, Conversion conversion, std::vector<HlcpMeasured>& measured,
-                  std::vector<Timed>& timed) {
+                  std::vector<Run>& runs) {
     HlcpMeasured m{family_.name, N, solver.name, warm, conversion, {}};
     auto peers = std::make_shared<std::vector<std::unique_ptr<LcpPeer>>>();
     for (std::size_t k = 0; k < problems_.size(); ++k) {
@@ -164,7 +164,7 @@ class Arena {
     }
     if (m.verdicts.right == static_cast<int>(problems_.size())) {
       const bool converts = conversion == Conversion::of_theirs;
-      timed.push_back({name_of(m), [=, this] { peer_sweep(*peers, warm, converts); }});
+      runs.push_back({name_of(m), [=, this] { peer_sweep(*peers, warm, converts); }});
     }
     measured.push_back(m);
   }
@@ -230,18 +230,19 @@ class Arena {
 template <int N>
 void measure_order(const HlcpFamily& family, const HlcpEffort& effort, std::vector<HlcpMeasured>& all) {
   std::vector<HlcpMeasured> measured;
-  std::vector<Timed> timed;
+  std::vector<Run> runs;
   Arena<N> arena(family, effort);
-  arena.enter(measured, timed);
+  arena.enter(measured, runs);
   const std::string what = fmt::format("{}, n = {}", family.name, N);
-  time_interleaved(timed, effort.repetitions, effort.least, [&](double part) { effort.progress(part, what); });
+  const std::vector<Timing> times = time_in_turns(
+      runs, effort.repetitions, effort.least, [&](double part, const std::string&) { effort.progress(part, what); });
   const double solves = Arena<N>::solves(static_cast<std::size_t>(effort.cases));
   for (HlcpMeasured& m : measured) {
-    for (const Timed& one : timed) {
-      if (one.name != Arena<N>::name_of(m)) continue;
-      m.ns = one.ns / solves;
-      m.ns_low = one.ns_low / solves;
-      m.ns_high = one.ns_high / solves;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (runs[k].name != Arena<N>::name_of(m)) continue;
+      m.ns = times[k].ns / solves;
+      m.ns_low = times[k].low / solves;
+      m.ns_high = times[k].high / solves;
     }
     all.push_back(m);
   }

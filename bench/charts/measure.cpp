@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
+
+#include "timing.hpp"
 
 namespace slideway::charts {
 namespace {
@@ -50,25 +51,6 @@ double seconds_of(const std::function<void()>& run) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Times of the repetitions, by benchmark.
-class Collector final : public benchmark::BenchmarkReporter {
- public:
-  explicit Collector(std::size_t expected, const MeasureOptions& options) : expected_(expected), options_(options) {}
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
-      times[run.run_name.function_name].push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
-      options_.progress(static_cast<double>(++seen_) / static_cast<double>(expected_), "timed");
-    }
-  }
-  std::map<std::string, std::vector<double>> times;  ///< s
-
- private:
-  std::size_t expected_, seen_ = 0;
-  const MeasureOptions& options_;
-};
-
 /// Is it worth timing: nobody of its family is as accurate in a third of the time?
 bool is_beaten(const Measured& one, const std::vector<Measured>& all) {
   return std::any_of(all.begin(), all.end(), [&](const Measured& other) {
@@ -104,35 +86,19 @@ std::vector<Measured> measure(const Contenders& contenders, const oracle::Refere
     }
   }
 
-  std::map<std::string, Measured*> timed;
+  std::vector<Measured*> timed;
+  std::vector<Run> runs;
   for (Measured& m : all) {
     if (!m.failure.empty() || is_beaten(m, all)) continue;
-    timed[fmt::format("{}/{}/{:g}", m.contender->family, m.contender->name, m.setting)] = &m;
+    timed.push_back(&m);
+    runs.push_back({fmt::format("{}/{}/{:g}", m.contender->family, m.contender->name, m.setting),
+                    [&m, &truth] { benchmark::DoNotOptimize(m.contender->run(truth.times, m.setting)); }, span});
   }
-  benchmark::ClearRegisteredBenchmarks();
-  for (const auto& [name, m] : timed) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [m = m, &truth](benchmark::State& state) {
-                                   for (auto _ : state)
-                                     benchmark::DoNotOptimize(m->contender->run(truth.times, m->setting));
-                                 })
-        ->UseRealTime()
-        ->MinTime(0.01)
-        ->Repetitions(options.repetitions);
-  }
-  char program[] = "charts", interleaved[] = "--benchmark_enable_random_interleaving=true";
-  char* arguments[] = {program, interleaved, nullptr};
-  int count = 2;
-  benchmark::Initialize(&count, arguments);
-  Collector collector(timed.size() * static_cast<std::size_t>(options.repetitions), options);
-  benchmark::RunSpecifiedBenchmarks(&collector);
-  for (auto& [name, m] : timed) {
-    std::vector<double>& times = collector.times[name];
-    if (times.empty()) continue;
-    std::sort(times.begin(), times.end());
-    m->ns = times[times.size() / 2] * 1e9 / span;
-    m->ns_low = times.front() * 1e9 / span;
-    m->ns_high = times.back() * 1e9 / span;
+  const std::vector<Timing> times = time_in_turns(runs, options.repetitions, 0.01, options.progress);
+  for (std::size_t k = 0; k < timed.size(); ++k) {
+    timed[k]->ns = times[k].ns;
+    timed[k]->ns_low = times[k].low;
+    timed[k]->ns_high = times[k].high;
   }
   return all;
 }

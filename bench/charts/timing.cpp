@@ -16,7 +16,7 @@ class Collector final : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
-      seconds[run.run_name.function_name].push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
+      seconds[run.run_name.function_name].push_back(run.cpu_accumulated_time / static_cast<double>(run.iterations));
       progress_(static_cast<double>(++seen_) / static_cast<double>(expected_), "timed");
     }
   }
@@ -37,7 +37,7 @@ std::vector<Timing> time_in_turns(const std::vector<Run>& runs, int repetitions,
                                  [&run](benchmark::State& state) {
                                    for (auto _ : state) run.go();
                                  })
-        ->UseRealTime()
+        ->MeasureProcessCPUTime()
         ->MinTime(seconds)
         ->Repetitions(repetitions);
   }
@@ -51,10 +51,10 @@ std::vector<Timing> time_in_turns(const std::vector<Run>& runs, int repetitions,
   for (const Run& run : runs) {
     std::vector<double>& times = collector.seconds[run.name];
     std::sort(times.begin(), times.end());
-    const double per_step = 1e9 / run.steps;
+    const double each = 1e9 / run.parts;
     all.push_back(times.empty()
                       ? Timing{}
-                      : Timing{per_step * times[times.size() / 2], per_step * times.front(), per_step * times.back()});
+                      : Timing{each * times[times.size() / 2], each * times.front(), each * times.back()});
   }
   return all;
 }

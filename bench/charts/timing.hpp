@@ -1,4 +1,5 @@
-// Times of runs that take turns, so that what else the machine does falls on all of them alike.
+// Times of runs that take turns, so that what else the machine does falls on all of them alike; by the processor's time
+// of the whole program, threads of theirs included, not by the clock.
 #pragma once
 
 #include <functional>
@@ -10,10 +11,10 @@ namespace slideway::charts {
 struct Run {
   std::string name;  ///< of its own
   std::function<void()> go;
-  double steps;  ///< that one go makes
+  double parts = 1;  ///< steps, solves: what the time is given for each of
 };
 
-/// ns a step: median, least and most of the repetitions.
+/// ns: median, least and most of the repetitions.
 struct Timing {
   double ns = 0, low = 0, high = 0;
 };
