@@ -1,0 +1,62 @@
+// What is true of one instant of a scene: by the oracle, in 50 digits. Who is judged says forces, or refuses.
+#pragma once
+
+#include <memory>
+#include <slideway/io/stepper.hpp>
+#include <slideway/oracle/check.hpp>
+#include <vector>
+
+#include "atlas.hpp"
+
+namespace slideway::charts {
+
+using State = io::RunStepper::State;
+
+/// The contact forces' problem S x + S* |x| = b at a state, all guides slipping: what others solve in their ways.
+struct ContactProblem {
+  int n = 0;
+  std::vector<double> S, S_star, b;  ///< row by row
+};
+
+class ExactInstant {
+ public:
+  ExactInstant(const RunScene& scene, const State& state);
+
+  /// The kernel's answer at the state. Right: forces and accelerations within four times the oracle's bound on what
+  /// rounding a state in doubles brings (it tries two patterns of signs, others exceed it by less), or 1e-12 of the
+  /// contact forces. Refused rightly: there is no solution (`no_solution`), there are several (`not_unique`), or rank
+  /// is lost or so near to it that rounding the state changes the answer by a tenth of itself.
+  Cell judge(const io::RunStepper& stepper) const;
+
+  /// Somebody's contact forces; none: a refusal. Right: as above, or within `tolerance` of the largest.
+  Cell judge(const std::vector<double>& lambda, double tolerance) const;
+
+  /// What a refusal by the kernel is.
+  Cell refused(Status status) const;
+
+  oracle::Verdict verdict() const { return verdict_; }
+  /// Largest error of contact forces, over the largest force.
+  double relative_error(const std::vector<double>& lambda) const;
+  /// What rounding the state makes of them, over the largest.
+  double relative_bound() const { return relative_bound_; }
+
+  /// False if what is left without contacts is singular.
+  bool problem(ContactProblem& problem) const;
+
+ private:
+  oracle::ClaimedInstant claim(const std::vector<double>& lambda) const;
+  bool has_no_digits() const;
+
+  State state_;
+  oracle::Model<oracle::Real> model_;
+  mutable oracle::Checker checker_;
+  mutable oracle::Dynamics<oracle::Real> dynamics_;
+  oracle::Mode mode_;
+  oracle::Coefficients<oracle::Real> mu_;
+  std::vector<int> slips_;
+  oracle::Verdict verdict_ = oracle::Verdict::none;
+  double relative_bound_ = 0;
+  bool lost_rank_ = false;
+};
+
+}  // namespace slideway::charts
