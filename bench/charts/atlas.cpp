@@ -8,17 +8,16 @@
 namespace slideway::charts {
 namespace {
 
-constexpr const char* cell_names[cell_kinds] = {"right", "refused rightly", "refused wrongly", "wrong in silence"};
-constexpr const char* cell_keys[cell_kinds] = {"right", "refused_rightly", "refused_wrongly", "wrong_in_silence"};
-constexpr char cell_letters[] = "rsfw";  ///< of a row in the document
+constexpr const char* cell_names[cell_kinds] = {"right", "refused rightly", "refused a step late", "refused wrongly",
+                                                "wrong in silence"};
+constexpr const char* cell_keys[cell_kinds] = {"right", "refused_rightly", "refused_late", "refused_wrongly",
+                                               "wrong_in_silence"};
+const Category cell_shades[cell_kinds] = {{{}, 0, 0.28}, {{}, 4, 0.45}, {{}, 4, 1}, {{}, 3, 0.9}, {{}, 1, 1}};
+constexpr char cell_letters[] = "rslfw";  ///< of a row in the document
 
 double middle(const Axis& axis, double part) {
   if (axis.logarithmic) return axis.from * std::pow(axis.to / axis.from, part);
   return axis.from + (axis.to - axis.from) * part;
-}
-
-std::vector<Category> categories() {
-  return {{cell_names[0], 0, 0.28}, {cell_names[1], 4, 0.55}, {cell_names[2], 3, 0.9}, {cell_names[3], 1, 1}};
 }
 
 io::Json axis_document(const Axis& axis, int cells) {
@@ -29,7 +28,8 @@ io::Json axis_document(const Axis& axis, int cells) {
 }  // namespace
 
 const std::vector<AtlasEntry>& atlas() {
-  static const std::vector<AtlasEntry> entries = {{"friction", draw_friction}};
+  static const std::vector<AtlasEntry> entries = {
+      {"friction", draw_friction}, {"pole", draw_pole}, {"units", draw_units}};
   return entries;
 }
 
@@ -49,21 +49,26 @@ std::vector<Cell> judge_cells(const Grid& grid, const std::function<Cell(double,
 }
 
 void add_cells(AtlasMap& map, const CellFigure& figure, const Grid& grid, const std::vector<Cell>& cells) {
-  Map drawing{figure.title, "", grid.x, grid.y, grid.columns, grid.rows, {}, categories(), figure.lines, figure.notes};
+  Map drawing{figure.title, "", grid.x, grid.y, grid.columns, grid.rows, {}, {}, figure.lines, figure.notes};
   io::Json counts = io::Json::object();
+  int place[cell_kinds];  // in the legend
   for (int kind = 0; kind < cell_kinds; ++kind) {
     const auto count = std::count(cells.begin(), cells.end(), static_cast<Cell>(kind));
     counts[cell_keys[kind]] = count;
-    drawing.categories[static_cast<std::size_t>(kind)].name += fmt::format(": {}", count);
+    place[kind] = static_cast<int>(drawing.categories.size());
+    if (count == 0 && static_cast<Cell>(kind) == Cell::refused_late) continue;
+    Category category = cell_shades[kind];
+    category.name = fmt::format("{}: {}", cell_names[kind], count);
+    drawing.categories.push_back(category);
   }
   drawing.subtitle = fmt::format("{}: {} of {} cases wrong in silence", figure.method,
-                                 counts[cell_keys[cell_kinds - 1]].get<long>(), cells.size());
+                                 std::count(cells.begin(), cells.end(), Cell::wrong), cells.size());
   io::Json rows = io::Json::array();
   for (int row = 0; row < grid.rows; ++row) {
     std::string letters;
     for (int column = 0; column < grid.columns; ++column) {
       const Cell cell = cells[static_cast<std::size_t>(row * grid.columns + column)];
-      drawing.cells.push_back(static_cast<int>(cell));
+      drawing.cells.push_back(place[static_cast<int>(cell)]);
       letters += cell_letters[static_cast<int>(cell)];
     }
     rows.push_back(letters);

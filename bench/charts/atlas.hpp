@@ -17,10 +17,11 @@ namespace slideway::charts {
 enum class Cell : signed char {
   right,
   refused_rightly,  ///< there is no answer, or none that doubles hold, and the status is the one for that
+  refused_late,     ///< by the step after the one that went beyond the last answer
   refused_wrongly,  ///< there is an answer, or the status names another reason
   wrong             ///< in silence: a number beyond tolerance with `ok`
 };
-inline constexpr int cell_kinds = 4;
+inline constexpr int cell_kinds = 5;
 
 /// Cases in rows and columns; a cell stands for its middle.
 struct Grid {

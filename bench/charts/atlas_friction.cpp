@@ -162,7 +162,7 @@ Geometry rod(const AtlasOptions& options) {
     const double degrees = g.grid.up(row);
     const auto unique = [&](double mu) {
       const RunScene scene = g.scene(mu, degrees);
-      return ExactInstant(scene, io::RunStepper(scene).start()).verdict() == oracle::Verdict::unique;
+      return ExactInstant(scene, io::RunStepper(scene).start()).is_unique();
     };
     double low = std::tan(degrees * std::acos(-1.0) / 360) + 0.01, high = 1.2;
     if (unique(low) || !unique(high)) continue;

@@ -35,6 +35,7 @@ ExactInstant::ExactInstant(const RunScene& scene, const State& state)
   lost_rank_ = !dynamics_.solve(mode_, oracle::Coefficients<Real>(mu_.size(), Real(0)));
   const oracle::InstantCheck check = checker_.check(claim({}));
   verdict_ = check.verdict;
+  solutions_ = check.solutions;
   relative_bound_ = check.lambda.scale > 0 ? patterns * check.lambda.bound / check.lambda.scale : 0;
 }
 
@@ -60,9 +61,14 @@ bool ExactInstant::has_no_digits() const { return lost_rank_ || relative_bound_ 
 Cell ExactInstant::refused(Status status) const {
   const bool singular = status == Status::singular_constraints || status == Status::inaccurate;
   if (has_no_digits()) return Cell::refused_rightly;
-  const bool right = (verdict_ == Verdict::none && status == Status::no_solution) ||
-                     (verdict_ == Verdict::several && status == Status::not_unique);
+  const bool right =
+      (verdict_ == Verdict::none && status == Status::no_solution) || (is_ambiguous() && status == Status::not_unique);
   return right && !singular ? Cell::refused_rightly : Cell::refused_wrongly;
+}
+
+/// Several motions, or several sets of sliding forces for a motion that drives decide.
+bool ExactInstant::is_ambiguous() const {
+  return verdict_ == Verdict::several || (verdict_ == Verdict::motion_only && solutions_ > 1);
 }
 
 Cell ExactInstant::judge(const io::RunStepper& stepper) const {
@@ -84,7 +90,7 @@ Cell ExactInstant::judge(const io::RunStepper& stepper) const {
 }
 
 Cell ExactInstant::judge(const std::vector<double>& lambda, double tolerance) const {
-  const bool answers = verdict_ == Verdict::unique && !lost_rank_;
+  const bool answers = is_unique() && !lost_rank_;
   if (lambda.empty()) return answers && !has_no_digits() ? Cell::refused_wrongly : Cell::refused_rightly;
   if (!answers) return Cell::wrong;
   const oracle::InstantCheck check = checker_.check(claim(lambda));

@@ -34,7 +34,8 @@ class ExactInstant {
   /// What a refusal by the kernel is.
   Cell refused(Status status) const;
 
-  oracle::Verdict verdict() const { return verdict_; }
+  bool is_unique() const { return verdict_ == oracle::Verdict::unique; }
+  bool is_ambiguous() const;
   /// Largest error of contact forces, over the largest force.
   double relative_error(const std::vector<double>& lambda) const;
   /// What rounding the state makes of them, over the largest.
@@ -55,6 +56,7 @@ class ExactInstant {
   oracle::Coefficients<oracle::Real> mu_;
   std::vector<int> slips_;
   oracle::Verdict verdict_ = oracle::Verdict::none;
+  int solutions_ = 0;
   double relative_bound_ = 0;
   bool lost_rank_ = false;
 };
