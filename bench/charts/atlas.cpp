@@ -29,7 +29,7 @@ io::Json axis_document(const Axis& axis, int cells) {
 
 const std::vector<AtlasEntry>& atlas() {
   static const std::vector<AtlasEntry> entries = {
-      {"friction", draw_friction}, {"pole", draw_pole}, {"units", draw_units}};
+      {"baumgarte", draw_baumgarte}, {"friction", draw_friction}, {"pole", draw_pole}, {"units", draw_units}};
   return entries;
 }
 
