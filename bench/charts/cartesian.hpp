@@ -35,6 +35,8 @@ class CartesianEquations {
   // Of the last accelerate():
   double lambda(int contact) const { return solution_(first_contact_ + contact); }
   double held_force(int guide) const { return solution_(held_[guide]); }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  const Eigen::VectorXd& right() const { return right_; }
 
  private:
   struct Point;
