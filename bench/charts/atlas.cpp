@@ -28,9 +28,9 @@ io::Json axis_document(const Axis& axis, int cells) {
 }  // namespace
 
 const std::vector<AtlasEntry>& atlas() {
-  static const std::vector<AtlasEntry> entries = {{"baumgarte", draw_baumgarte}, {"friction", draw_friction},
-                                                  {"pole", draw_pole},           {"mass_ratio", draw_mass_ratio},
-                                                  {"long_run", draw_long_run},   {"units", draw_units}};
+  static const std::vector<AtlasEntry> entries = {
+      {"baumgarte", draw_baumgarte}, {"friction", draw_friction}, {"pole", draw_pole},  {"mass_ratio", draw_mass_ratio},
+      {"singular", draw_singular},   {"long_run", draw_long_run}, {"units", draw_units}};
   return entries;
 }
 

@@ -178,8 +178,8 @@ void draw_cells(const Case& of, const RunScene& scene, Method method, const Atla
   const long steps = options.quick ? 50 : 200;
   const Grid grid{{"h sqrt(beta)", 0, 8},
                   {"damping ratio, alpha / (2 sqrt(beta))", 0, 3},
-                  options.quick ? 10 : 60,
-                  options.quick ? 6 : 40};
+                  options.quick ? 10 : 48,
+                  options.quick ? 6 : 32};
   io::RunStepper judge = stepper_of(scene, Method::dop853_located, of.dt, 0.25, 1);
   const ShortRun truth = short_run(judge, judge.start(), of.dt, steps);
   const auto cells = judge_cells(grid, [&](double z, double damping) {

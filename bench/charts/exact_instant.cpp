@@ -1,6 +1,9 @@
 #include "exact_instant.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slideway::charts {
 namespace {
@@ -11,8 +14,24 @@ using oracle::Verdict;
 constexpr double patterns = 4;  // of signs that the oracle does not try
 constexpr double noise = 0.1;   // an answer that rounding changes by this part of itself has no digit
 
-bool fits(const oracle::Shortfall& s, double tolerance) {
-  return s.error <= patterns * s.bound || s.error <= tolerance * s.scale;
+/// `beside`: a size of the terms that a small result is the difference of.
+bool fits(const oracle::Shortfall& s, double tolerance, double beside) {
+  const double scale = std::max(s.scale, beside);
+  return s.error <= tolerance * scale || s.error <= std::min(patterns * s.bound, noise * scale);
+}
+
+/// Of S with ones on its diagonal, rounded to doubles: is the least eigenvalue rounding?
+bool is_singular_in_doubles(const ContactProblem& p) {
+  Eigen::MatrixXd S(p.n, p.n);
+  for (int i = 0; i < p.n; ++i) {
+    for (int j = 0; j < p.n; ++j) {
+      const auto at = [&](int row, int column) { return p.S[static_cast<std::size_t>(row * p.n + column)]; };
+      S(i, j) = at(i, j) / std::sqrt(at(i, i) * at(j, j));
+    }
+  }
+  if (!std::isfinite(S.sum())) return true;
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S).eigenvalues()(0);
+  return least < 8 * p.n * std::numeric_limits<double>::epsilon();
 }
 
 }  // namespace
@@ -33,6 +52,8 @@ ExactInstant::ExactInstant(const RunScene& scene, const State& state)
   }
   mode_.sign.assign(static_cast<std::size_t>(dynamics_.contacts()), 1);
   lost_rank_ = !dynamics_.solve(mode_, oracle::Coefficients<Real>(mu_.size(), Real(0)));
+  ContactProblem rounded;
+  lost_rank_ = lost_rank_ || !problem(rounded) || (rounded.n > 0 && is_singular_in_doubles(rounded));
   const oracle::InstantCheck check = checker_.check(claim({}));
   verdict_ = check.verdict;
   solutions_ = check.solutions;
@@ -56,6 +77,7 @@ oracle::ClaimedInstant ExactInstant::claim(const std::vector<double>& lambda) co
   return c;
 }
 
+/// In the state, or in the contacts' problem in doubles.
 bool ExactInstant::has_no_digits() const { return lost_rank_ || relative_bound_ > noise; }
 
 Cell ExactInstant::refused(Status status) const {
@@ -71,7 +93,7 @@ bool ExactInstant::is_ambiguous() const {
   return verdict_ == Verdict::several || (verdict_ == Verdict::motion_only && solutions_ > 1);
 }
 
-Cell ExactInstant::judge(const io::RunStepper& stepper) const {
+Cell ExactInstant::judge(const io::RunStepper& stepper, double tolerance) const {
   io::RunStepper::Reaction r;
   const Report report = stepper.reaction(state_, {}, r);
   if (report.status != Status::ok) return refused(report.status);
@@ -83,18 +105,19 @@ Cell ExactInstant::judge(const io::RunStepper& stepper) const {
   const oracle::InstantCheck check = checker_.check(c);
   if (check.verdict == Verdict::none || !check.answered) return Cell::wrong;
   if (check.verdict == Verdict::several) return report.uniqueness == Uniqueness::refuted ? Cell::right : Cell::wrong;
-  constexpr double cancelled = 1e-12;
-  const bool motion = fits(check.acceleration, cancelled);
-  const bool forces = fits(check.lambda, cancelled) && fits(check.friction, cancelled) && fits(check.drive, cancelled);
+  const double force = check.lambda.scale, weight = std::hypot(scene.gravity.x, scene.gravity.y);
+  const bool motion = fits(check.acceleration, tolerance, weight);
+  const bool forces = fits(check.lambda, tolerance, 0) && fits(check.friction, tolerance, force) &&
+                      fits(check.drive, tolerance, force * stepper.source.tables.length);
   return motion && (forces || check.verdict == Verdict::motion_only) ? Cell::right : Cell::wrong;
 }
 
 Cell ExactInstant::judge(const std::vector<double>& lambda, double tolerance) const {
-  const bool answers = is_unique() && !lost_rank_;
+  const bool answers = is_unique();
   if (lambda.empty()) return answers && !has_no_digits() ? Cell::refused_wrongly : Cell::refused_rightly;
   if (!answers) return Cell::wrong;
   const oracle::InstantCheck check = checker_.check(claim(lambda));
-  return check.answered && fits(check.lambda, tolerance) ? Cell::right : Cell::wrong;
+  return check.answered && fits(check.lambda, tolerance, 0) ? Cell::right : Cell::wrong;
 }
 
 double ExactInstant::relative_error(const std::vector<double>& lambda) const {

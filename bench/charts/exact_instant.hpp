@@ -22,13 +22,14 @@ class ExactInstant {
  public:
   ExactInstant(const RunScene& scene, const State& state);
 
-  /// The kernel's answer at the state. Right: forces and accelerations within four times the oracle's bound on what
-  /// rounding a state in doubles brings (it tries two patterns of signs, others exceed it by less), or 1e-12 of the
-  /// contact forces. Refused rightly: there is no solution (`no_solution`), there are several (`not_unique`), or rank
-  /// is lost or so near to it that rounding the state changes the answer by a tenth of itself.
-  Cell judge(const io::RunStepper& stepper) const;
+  /// The kernel's answer at the state. Right: forces and accelerations within `tolerance` of the largest, or four times
+  /// the oracle's bound on what rounding a state in doubles brings (it tries two patterns of signs, others exceed it by
+  /// less), as long as that leaves a digit. Refused rightly: there is no solution (`no_solution`), there are several
+  /// (`not_unique`), or rank is lost, or so near to it that rounding the state changes the answer by a tenth of itself
+  /// or the contacts' matrix S cannot be told from a singular one in doubles.
+  Cell judge(const io::RunStepper& stepper, double tolerance = 1e-12) const;
 
-  /// Somebody's contact forces; none: a refusal. Right: as above, or within `tolerance` of the largest.
+  /// Somebody's contact forces; none: a refusal.
   Cell judge(const std::vector<double>& lambda, double tolerance) const;
 
   /// What a refusal by the kernel is.
