@@ -8,12 +8,13 @@
 namespace slideway::charts {
 namespace {
 
-constexpr const char* cell_names[cell_kinds] = {"right", "refused rightly", "refused a step late", "refused wrongly",
-                                                "wrong in silence"};
-constexpr const char* cell_keys[cell_kinds] = {"right", "refused_rightly", "refused_late", "refused_wrongly",
-                                               "wrong_in_silence"};
-const Category cell_shades[cell_kinds] = {{{}, 0, 0.28}, {{}, 4, 0.45}, {{}, 4, 1}, {{}, 3, 0.9}, {{}, 1, 1}};
-constexpr char cell_letters[] = "rslfw";  ///< of a row in the document
+constexpr const char* cell_names[cell_kinds] = {
+    "right", "refused rightly", "refused a step late", "off, events counted", "refused wrongly", "wrong in silence"};
+constexpr const char* cell_keys[cell_kinds] = {"right",  "refused_rightly", "refused_late",
+                                               "warned", "refused_wrongly", "wrong_in_silence"};
+const Category cell_shades[cell_kinds] = {{{}, 0, 0.28}, {{}, 4, 0.45}, {{}, 4, 1},
+                                          {{}, 5, 0.9},  {{}, 3, 0.9},  {{}, 1, 1}};
+constexpr char cell_letters[] = "rslcfw";  ///< of a row in the document
 
 double middle(const Axis& axis, double part) {
   if (axis.logarithmic) return axis.from * std::pow(axis.to / axis.from, part);
@@ -28,9 +29,14 @@ io::Json axis_document(const Axis& axis, int cells) {
 }  // namespace
 
 const std::vector<AtlasEntry>& atlas() {
-  static const std::vector<AtlasEntry> entries = {
-      {"baumgarte", draw_baumgarte}, {"friction", draw_friction}, {"pole", draw_pole},  {"mass_ratio", draw_mass_ratio},
-      {"singular", draw_singular},   {"long_run", draw_long_run}, {"units", draw_units}};
+  static const std::vector<AtlasEntry> entries = {{"baumgarte", draw_baumgarte},
+                                                  {"friction", draw_friction},
+                                                  {"pole", draw_pole},
+                                                  {"stick_slip", draw_stick_slip},
+                                                  {"mass_ratio", draw_mass_ratio},
+                                                  {"singular", draw_singular},
+                                                  {"long_run", draw_long_run},
+                                                  {"units", draw_units}};
   return entries;
 }
 
@@ -57,7 +63,8 @@ void add_cells(AtlasMap& map, const CellFigure& figure, const Grid& grid, const 
     const auto count = std::count(cells.begin(), cells.end(), static_cast<Cell>(kind));
     counts[cell_keys[kind]] = count;
     place[kind] = static_cast<int>(drawing.categories.size());
-    if (count == 0 && static_cast<Cell>(kind) == Cell::refused_late) continue;
+    const bool rare = static_cast<Cell>(kind) == Cell::refused_late || static_cast<Cell>(kind) == Cell::warned;
+    if (count == 0 && rare) continue;
     Category category = cell_shades[kind];
     category.name = fmt::format("{}: {}", cell_names[kind], count);
     drawing.categories.push_back(category);

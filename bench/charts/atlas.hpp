@@ -18,10 +18,11 @@ enum class Cell : signed char {
   right,
   refused_rightly,  ///< there is no answer, or none that doubles hold, and the status is the one for that
   refused_late,     ///< by the step after the one that went beyond the last answer
+  warned,           ///< off, and the report counts the events that were stepped over
   refused_wrongly,  ///< there is an answer, or the status names another reason
   wrong             ///< in silence: a number beyond tolerance with `ok`
 };
-inline constexpr int cell_kinds = 5;
+inline constexpr int cell_kinds = 6;
 
 /// Cases in rows and columns; a cell stands for its middle.
 struct Grid {

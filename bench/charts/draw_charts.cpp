@@ -1,6 +1,6 @@
 // Draws docs/charts and writes bench/results.
 //
-//     draw_charts [--quick] [--root DIR] [SCENE...]
+//     draw_charts [--quick] [--root DIR] [SCENE | MAP...]     a map of the stability atlas: atlas.hpp
 //
 // --quick: coarse settings alone, to see that everything still draws; nothing that it writes is for docs.
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "atlas.hpp"
 #include "embedded.hpp"
 #include "kernel_contender.hpp"
 #include "work_precision.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 struct Options {
   bool quick = false;
   fs::path root = SLIDEWAY_SOURCE_DIR;
-  std::vector<std::string> scenes;
+  std::vector<std::string> names;
 };
 
 void write(const fs::path& file, const std::string& text) {
@@ -77,6 +78,30 @@ void draw(const EmbeddedScene& embedded, const Options& options) {
   }
 }
 
+void draw(const AtlasEntry& entry, const Options& options) {
+  AtlasOptions how;
+  how.quick = options.quick;
+  how.scene = [](const std::string& name) {
+    io::Reading reading = io::read_scene((fs::path(SLIDEWAY_SOURCE_DIR) / "scenes" / (name + ".toml")).string(), {});
+    if (!reading.scene) throw std::runtime_error(to_string(reading.defects.at(0)));
+    return reading.scene->scene;
+  };
+  how.progress = [&](double part, const std::string& what) {
+    fmt::print(stderr, "\r\33[K{}: {:3.0f} % {}", entry.name, 100 * part, what);
+  };
+  const AtlasMap map = entry.draw(how);
+  fmt::print(stderr, "\r\33[K");
+  for (const NamedFigure& figure : map.figures) {
+    write(options.root / "docs/charts" / (figure.name + ".svg"),
+          std::visit([](const auto& drawing) { return svg(drawing); }, figure.figure));
+  }
+  write(options.root / "bench/results" / (map.name + ".json"), io::text(map.document));
+  if (!map.document.contains("maps")) return;
+  for (const auto& figure : map.document["maps"]) {
+    fmt::print("{:10s} {:34s} {}\n", map.name, figure["name"].get<std::string>(), figure["counts"].dump());
+  }
+}
+
 int run(int count, char** arguments) {
   Options options;
   for (int i = 1; i < count; ++i) {
@@ -85,13 +110,17 @@ int run(int count, char** arguments) {
     } else if (std::strcmp(arguments[i], "--root") == 0 && i + 1 < count) {
       options.root = arguments[++i];
     } else {
-      options.scenes.emplace_back(arguments[i]);
+      options.names.emplace_back(arguments[i]);
     }
   }
+  const auto wanted = [&](const std::string& name) {
+    return options.names.empty() || std::find(options.names.begin(), options.names.end(), name) != options.names.end();
+  };
   for (const EmbeddedScene& scene : embedded_scenes()) {
-    const bool wanted = options.scenes.empty() ||
-                        std::find(options.scenes.begin(), options.scenes.end(), scene.name) != options.scenes.end();
-    if (wanted) draw(scene, options);
+    if (wanted(scene.name)) draw(scene, options);
+  }
+  for (const AtlasEntry& entry : atlas()) {
+    if (wanted(entry.name)) draw(entry, options);
   }
   return 0;
 }
