@@ -143,12 +143,13 @@ class Drawing {
   }
   void end_plot() { text_ += "</g>\n"; }
 
-  void cell(int column, int row, int columns, int rows, const Category& category) {
-    const double w = (width - left - right) / columns, h = plot_height / rows;
+  /// Cells of one category, from one column to before another: one shape, so that no seams show.
+  void cells(int column, int end, int row, int columns, int rows, const Category& category) {
+    const double across = (width - left - right) / columns, w = across * (end - column), h = plot_height / rows;
     text_ += fmt::format(
         "<path style=\"stroke:none;fill:{};fill-opacity:{}\" d=\"M{:.2f} {:.2f}h{:.2f}v{:.2f}h-{:.2f}z\"/>\n",
-        colour_of(category.colour), category.strength, left + column * w, top_ + plot_height - (row + 1) * h, w + 0.05,
-        h + 0.05, w + 0.05);
+        colour_of(category.colour), category.strength, left + column * across, top_ + plot_height - (row + 1) * h, w, h,
+        w);
   }
 
   void line(const Line& line) {
@@ -256,10 +257,11 @@ std::string svg(const Map& map, const std::string& foot) {
   const int categories = static_cast<int>(map.categories.size());
   Drawing drawing(map.title, map.subtitle, foot, map.x, map.y, (categories + legend_entries(map) + 1) / 2);
   for (int row = 0; row < map.rows; ++row) {
-    for (int column = 0; column < map.columns; ++column) {
-      const int category = map.cells[static_cast<std::size_t>(row * map.columns + column)];
-      if (category >= 0)
-        drawing.cell(column, row, map.columns, map.rows, map.categories[static_cast<std::size_t>(category)]);
+    for (int column = 0, end = 0; column < map.columns; column = end) {
+      const auto at = [&](int k) { return map.cells[static_cast<std::size_t>(row * map.columns + k)]; };
+      while (end < map.columns && at(end) == at(column)) ++end;
+      if (at(column) < 0) continue;
+      drawing.cells(column, end, row, map.columns, map.rows, map.categories[static_cast<std::size_t>(at(column))]);
     }
   }
   drawing.axes();

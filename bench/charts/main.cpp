@@ -14,7 +14,7 @@ namespace {
 enum Exit : int { good = 0, refused = 1, bad_input = 2 };
 
 struct Options {
-  std::string scene, atlas, directory = ".";
+  std::string scene, atlas, directory = ".", root = SLIDEWAY_SOURCE_DIR;
   std::vector<std::string> settings, names;
   bool quick = false;
 };
@@ -44,14 +44,14 @@ int chart(const Options& options) {
 }
 
 int atlas_map(const Options& options) {
-  find(atlas(), options.atlas);
-  draw_atlas(options.atlas,
-             session_of(options, "slideway atlas " + options.atlas, options.directory, options.directory));
+  const std::vector<Board> maps = atlas_boards();
+  find(maps, options.atlas)
+      .draw(session_of(options, "slideway atlas " + options.atlas, options.directory, options.directory));
   return good;
 }
 
 int docs(const Options& options) {
-  const std::filesystem::path root = options.directory.empty() ? SLIDEWAY_SOURCE_DIR : options.directory;
+  const std::filesystem::path root = options.root;
   for (const std::string& name : options.names) find(boards(), name);
   for (const Board& board : boards()) {
     const bool wanted = options.names.empty() ||
@@ -68,8 +68,9 @@ int run(int count, char** arguments) {
   Options options;
   int status = good;
 
-  CLI::App* one = command.add_subcommand("chart", "Chart a scene's error against time: SCENE_time.svg, _evaluations, "
-                                                  "_forces, SCENE.json");
+  CLI::App* one = command.add_subcommand("chart",
+                                         "Chart a scene's error against time: SCENE_time.svg, _evaluations, "
+                                         "_forces, SCENE.json");
   one->add_option("SCENE", options.scene, "A scene file, - for standard input, or the name of a shipped scene")
       ->required();
   one->add_option("--set", options.settings, "Replace one value of the scene, as in guide.slot.mu=0.3")
@@ -82,8 +83,8 @@ int run(int count, char** arguments) {
   map->callback([&] { status = atlas_map(options); });
 
   CLI::App* all = command.add_subcommand("docs", "All that docs/charts.md shows, or what is named");
-  all->add_option("NAME", options.names, "A charted scene, hlcp, engines, growth, detail, or a map of the atlas");
-  all->add_option("--root", options.directory, "Write to DIR/docs/charts and DIR/bench/results")->default_str("");
+  all->add_option("NAME", options.names, "A charted scene, engines, hlcp_kind, hlcp_hard, growth, detail, or a map");
+  all->add_option("--root", options.root, "Write to DIR/docs/charts and DIR/bench/results");
   all->callback([&] { status = docs(options); });
 
   for (CLI::App* verb : {one, map, all}) {

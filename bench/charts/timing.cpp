@@ -52,9 +52,8 @@ std::vector<Timing> time_in_turns(const std::vector<Run>& runs, int repetitions,
     std::vector<double>& times = collector.seconds[run.name];
     std::sort(times.begin(), times.end());
     const double each = 1e9 / run.parts;
-    all.push_back(times.empty()
-                      ? Timing{}
-                      : Timing{each * times[times.size() / 2], each * times.front(), each * times.back()});
+    all.push_back(times.empty() ? Timing{}
+                                : Timing{each * times[times.size() / 2], each * times.front(), each * times.back()});
   }
   return all;
 }

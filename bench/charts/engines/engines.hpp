@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "contender.hpp"
+#include "motion/contender.hpp"
 
 namespace slideway::charts {
 

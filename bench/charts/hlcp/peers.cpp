@@ -1,4 +1,4 @@
-#include "hlcp_peers.hpp"
+#include "peers.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

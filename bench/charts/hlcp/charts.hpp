@@ -4,7 +4,7 @@
 #include <slideway/io/json.hpp>
 
 #include "figure.hpp"
-#include "hlcp_measure.hpp"
+#include "measure.hpp"
 
 namespace slideway::charts {
 

@@ -1,11 +1,11 @@
-#include "hlcp_charts.hpp"
+#include "charts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hlcp_peers.hpp"
+#include "peers.hpp"
 
 namespace slideway::charts {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "cartesian.hpp"
+#include "motion/cartesian.hpp"
 
 namespace slideway::charts {
 

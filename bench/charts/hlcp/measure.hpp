@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "hlcp_families.hpp"
+#include "families.hpp"
 
 namespace slideway::charts {
 

@@ -1,11 +1,11 @@
-#include "hlcp_families.hpp"
+#include "families.hpp"
 
 #include <cmath>
 #include <random>
 #include <slideway/io/stepper.hpp>
 #include <stdexcept>
 
-#include "../hlcp_chain.hpp"
+#include "../../hlcp_chain.hpp"
 
 namespace slideway::charts {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <slideway/scenes/crank_rocker_offset.hpp>
 
-#include "kernel_contender.hpp"
+#include "motion/kernel_contender.hpp"
 
 namespace slideway::charts {
 namespace {

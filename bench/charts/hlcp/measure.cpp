@@ -1,4 +1,4 @@
-#include "hlcp_measure.hpp"
+#include "measure.hpp"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <slideway/hlcp.hpp>
 #include <slideway/oracle/hlcp.hpp>
 
-#include "hlcp_peers.hpp"
+#include "peers.hpp"
 #include "timing.hpp"
 
 namespace slideway::charts {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engines.hpp"
-#include "work_precision.hpp"
+#include "motion/work_precision.hpp"
 
 namespace slideway::charts {
 

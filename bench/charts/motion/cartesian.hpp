@@ -49,6 +49,8 @@ class CartesianEquations {
   double Phi_rate(int row) const { return rate_(3 * scene_.bodies + row); }
   /// out += Phi_q^T m.
   void add_transposed(const double* m, double* out) const;
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  const Eigen::VectorXd& right() const { return right_; }
 
  private:
   struct Point;
