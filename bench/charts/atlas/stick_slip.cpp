@@ -131,9 +131,9 @@ AtlasMap draw_stick_slip(const AtlasOptions& options) {
   const RunScene given = options.scene("belt");
   const double finest = options.quick ? 1e-2 : 1e-3;
   const Grid grid{{"step, s", finest, 10, true},
-                  {"speed of the belt, m/s", 0.01, 1, true},
-                  options.quick ? 12 : 48,
-                  options.quick ? 9 : 36};
+                  {"speed of the belt, m/s", 0.05, 1, true},
+                  options.quick ? 12 : 40,
+                  options.quick ? 9 : 24};
   Line stick{"a step as long as a sticking phase", {6, -1, false}, {}, {}};
   Line slip{"as long as a slipping phase", {6, -1, true}, {}, {}};
   for (const double speed : decades(-2, 0, 10)) {

@@ -1,6 +1,7 @@
 // The same runs in other units, each judged by the run in SI units: units that are powers of two (of mass, of four: its
 // root is taken) must give every bit of it, others its numbers to rounding.
 #include <cmath>
+#include <stdexcept>
 
 #include "scaled.hpp"
 
@@ -27,6 +28,7 @@ Cell judge(const RunScene& scene, const Case& of, const Units& units, bool bits)
   io::RunStepper plain(scene), other(in_units(scene, units));
   plain.method = other.method = of.method;
   const ShortRun truth = short_run(plain, plain.start(), of.dt, of.steps);
+  if (truth.status != Status::ok) throw std::runtime_error(of.scene + ": the run in SI units is refused");
   const ShortRun run = short_run(other, other.start(), of.dt * units.s, of.steps);
   if (truth.status != run.status || truth.steps != run.steps) {
     return run.status == Status::ok ? Cell::wrong : Cell::refused_wrongly;
@@ -50,16 +52,17 @@ void draw(const std::string& name, const std::string& other, const AtlasOptions&
   // A cell's middle is a power of ten.
   const double half = options.quick ? std::pow(10, 2.25) : std::sqrt(10.0);
   const Grid grid{{"length unit, 1 / m", 1e-9 / half, 1e9 * half, true}, {other, 1e-9 / half, 1e9 * half, true}, n, n};
+  std::vector<RunScene> scenes;
+  for (const Case& one : cases) scenes.push_back(options.scene(one.scene));
   std::vector<Cell> decimal, binary;
   int done = 0;
   judge_cells(grid, [&](double x, double y) {
     options.progress(done++ / static_cast<double>(n * n), name);
     Cell to_rounding = Cell::right, to_the_bit = Cell::right;
     const Units tens = units(x, y), twos{power_of(2, tens.m), power_of(4, tens.kg), power_of(2, tens.s)};
-    for (const Case& one : cases) {
-      const RunScene scene = options.scene(one.scene);
-      to_rounding = worse(to_rounding, judge(scene, one, tens, false));
-      to_the_bit = worse(to_the_bit, judge(scene, one, twos, true));
+    for (std::size_t k = 0; k < scenes.size(); ++k) {
+      to_rounding = worse(to_rounding, judge(scenes[k], cases[k], tens, false));
+      to_the_bit = worse(to_the_bit, judge(scenes[k], cases[k], twos, true));
     }
     decimal.push_back(to_rounding);
     binary.push_back(to_the_bit);
