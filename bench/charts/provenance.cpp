@@ -48,7 +48,7 @@ Provenance provenance(const std::string& command, const std::string& root) {
 }
 
 std::string line(const Provenance& made) {
-  return fmt::format("{}   {}{}{}   {}", made.command, made.commit, made.commit.empty() ? "" : "   ", made.compiler,
+  return fmt::format("{} · {}{}{} · {}", made.command, made.commit, made.commit.empty() ? "" : " · ", made.compiler,
                      made.machine);
 }
 

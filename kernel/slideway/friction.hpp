@@ -298,7 +298,7 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
-  constexpr bool room = Size::contacts > 1;
+  constexpr bool room = most_rows<Source>() > 1;
   const bool two = room && scene.guide[g].contacts == 2, other_two = room && scene.guide[o].contacts == 2;
   const bool clear = table.ideal > 0;
   const auto& N = clear ? fr.N_clear[g] : fr.N[g];

@@ -27,10 +27,12 @@ inline bool solve_with_signs(const Hlcp<Capacity>& problem, Count n, const signe
     }
   }
   if constexpr (Capacity >= 3) {
-    Trial<Capacity> trial;
-    if (!attempt(problem, n, signs, trial)) return false;
-    for (int k = 0; k < n; ++k) x[k] = trial.x[k];
-    return true;
+    if (n >= 3) {
+      Trial<Capacity> trial;
+      if (!attempt(problem, n, signs, trial)) return false;
+      for (int k = 0; k < n; ++k) x[k] = trial.x[k];
+      return true;
+    }
   }
   return false;
 }
