@@ -213,7 +213,7 @@ template <int Capacity, class Count>
 [[gnu::noinline]] void solve_many(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                                   HlcpOptions options) noexcept {
   Trial<Capacity> trial;
-  if (attempt(problem, n, solution.sign, trial)) {
+  if (attempt_many(problem, n, solution.sign, trial)) {
     if (!clear(trial.x, n, solution.sign)) return solve_many_again(problem, n, trial, solution, options);
     if (accept_trial(problem, n, trial, solution.sign, 1, solution)) return;
   }

@@ -27,12 +27,10 @@ inline bool solve_with_signs(const Hlcp<Capacity>& problem, Count n, const signe
     }
   }
   if constexpr (Capacity >= 3) {
-    if (n >= 3) {
-      Trial<Capacity> trial;
-      if (!attempt(problem, n, signs, trial)) return false;
-      for (int k = 0; k < n; ++k) x[k] = trial.x[k];
-      return true;
-    }
+    Trial<Capacity> trial;
+    if (!attempt_many(problem, n, signs, trial)) return false;
+    for (int k = 0; k < n; ++k) x[k] = trial.x[k];
+    return true;
   }
   return false;
 }

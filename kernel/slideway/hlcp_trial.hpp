@@ -417,7 +417,7 @@ inline void correct_small(const Hlcp<Capacity>& problem, int n, const double* re
 template <int Capacity>
 inline void correct(const Hlcp<Capacity>& problem, int n, const double* rest, Trial<Capacity>& trial) noexcept {
   if (n <= 2) return correct_small(problem, n, rest, trial);
-  double change[Capacity];
+  double change[Capacity] = {};
   for (int i = 0; i < n; ++i) change[i] = rest[trial.row[i]];
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) change[i] -= trial.lu[i][k] * change[k];
@@ -476,14 +476,21 @@ inline bool factor_and_solve(const Hlcp<Capacity>& problem, Count n, const signe
   return true;
 }
 
-/// Solves with W(signs), n >= 1. Returns whether data in range gave a regular matrix and an accurate x.
+/// Solves with W(signs), n >= 3. Returns whether data in range gave a regular matrix and an accurate x.
 template <int Capacity, class Count>
-inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
-  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
+inline bool attempt_many(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
+                         Trial<Capacity>& trial) noexcept {
   if (!factor_and_solve(problem, n, signs, trial)) return false;
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
   return trial.accurate;
+}
+
+/// The same for n >= 1.
+template <int Capacity, class Count>
+inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
+  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
+  return attempt_many(problem, n, signs, trial);
 }
 
 }  // namespace slideway::hlcp_detail
