@@ -127,7 +127,7 @@ std::string bar_line(const HlcpBoard& board, const std::string& family, int n, b
   } else if (theirs == nullptr) {
     verdict = "missing: Siconos";
   } else if (theirs->ns == 0) {
-    verdict = fmt::format("held: lexicolemke right in {} of {}", theirs->verdicts.right, count(theirs->verdicts));
+    verdict = fmt::format("no ratio: lexicolemke right in {} of {}", theirs->verdicts.right, count(theirs->verdicts));
   }
   return fmt::format("{:9s} {:16s} n = {:2d} {:11s} {:9.1f} ns {:9.1f} ns {:7.2f} x, at least {:4.1f}: {}", board.name,
                      family, n, warm ? "right signs" : "from +", ours != nullptr ? ours->ns : 0,
