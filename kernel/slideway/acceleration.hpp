@@ -268,7 +268,7 @@ template <class Source>
         without.plus[i][j] = without.minus[i][j] = 0.5 * (hlcp.plus[i][j] + hlcp.minus[i][j]);
       }
     }
-    HlcpSolution<at_least_one(most_rows<Source>())> answer = {};
+    HlcpSolution<at_least_one(most_rows<Source>)> answer = {};
     solve(without, rows, answer);
     if (answer.status == Status::ok) blamed = g;
   });
@@ -292,7 +292,7 @@ SLIDEWAY_INLINE auto rows_of(const Source& source, int part) noexcept {
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE Status press(const Source& source, int part, Aim aim, const Solving& solving, Problem<Source>& hlcp,
                              Modes<Size>& m, Friction<Size>& fr, Reaction<Size>& r, Report& report) noexcept {
-  HlcpSolution<at_least_one(most_rows<Source>())> answer;
+  HlcpSolution<at_least_one(most_rows<Source>)> answer;
   each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD { answer.sign[i] = m.sign[c]; });
   const auto rows = rows_of(source, part);
   if (aim == Aim::follow) {

@@ -43,27 +43,20 @@ struct Friction {
   double ideal_target[n_ideal];  ///< c_P of the pins
 };
 
-/// Rough contacts and rough guides of the largest part.
+/// Rough contacts and rough guides of the largest part; of a scene that the compiler does not know, of all there is
+/// room for.
+template <class Source, bool known = Source::folds>
+inline constexpr int most_rows = Source::Size::contacts;
 template <class Source>
-constexpr int most_rows() noexcept {
-  if constexpr (Source::folds) {
-    return Source::tables.most_rows;
-  } else {
-    return Source::Size::contacts;
-  }
-}
+inline constexpr int most_rows<Source, true> = Source::tables.most_rows;
+template <class Source, bool known = Source::folds>
+inline constexpr int most_guides = Source::Size::guides;
 template <class Source>
-constexpr int most_guides() noexcept {
-  if constexpr (Source::folds) {
-    return Source::tables.most_guides;
-  } else {
-    return Source::Size::guides;
-  }
-}
+inline constexpr int most_guides<Source, true> = Source::tables.most_guides;
 
 /// The HLCP of a part's rough contacts.
 template <class Source>
-using Problem = Hlcp<at_least_one(most_rows<Source>())>;
+using Problem = Hlcp<at_least_one(most_rows<Source>)>;
 
 /// The relative Jacobian row of a link along `direction` at `place`: the free coordinates among its columns.
 template <class Source, class Size = typename Source::Size>
@@ -298,7 +291,7 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
-  constexpr bool room = most_rows<Source>() > 1;
+  constexpr bool room = most_rows < Source >> 1;
   const bool two = room && scene.guide[g].contacts == 2, other_two = room && scene.guide[o].contacts == 2;
   const bool clear = table.ideal > 0;
   const auto& N = clear ? fr.N_clear[g] : fr.N[g];
@@ -354,8 +347,8 @@ template <class Source, class F>
 SLIDEWAY_INLINE void each_guide_in_part(const Source& source, int part, F&& f) noexcept {
   const auto& table = source.tables;
   const int first = table.first_guide[part];
-  for_each<Source, most_guides<Source>()>(table.first_guide[part + 1] - first,
-                                          [&](int i) SLIDEWAY_FOLD { f(table.rough_guide[first + i]); });
+  for_each<Source, most_guides<Source>>(table.first_guide[part + 1] - first,
+                                        [&](int i) SLIDEWAY_FOLD { f(table.rough_guide[first + i]); });
 }
 
 /// f(row, contact) for each rough contact of a part.
@@ -363,8 +356,8 @@ template <class Source, class F>
 SLIDEWAY_INLINE void each_row_in_part(const Source& source, int part, F&& f) noexcept {
   const auto& table = source.tables;
   const int first = table.first_row[part];
-  for_each<Source, most_rows<Source>()>(table.first_row[part + 1] - first,
-                                        [&](int m) SLIDEWAY_FOLD { f(m, table.rough_contact[first + m]); });
+  for_each<Source, most_rows<Source>>(table.first_row[part + 1] - first,
+                                      [&](int m) SLIDEWAY_FOLD { f(m, table.rough_contact[first + m]); });
 }
 
 /// The rows, S, S* and b of a part's rough contacts. False when rank is lost. Cost: guides^2 times the overlap of their

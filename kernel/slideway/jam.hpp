@@ -144,7 +144,7 @@ class JammedGuides : public RestEquations<Source> {
   }
 
   using Search =
-      LeastNorm<at_least_one(most_rows<Source>() + 3 * most_guides<Source>()), at_least_one(most_guides<Source>())>;
+      LeastNorm<at_least_one(most_rows<Source> + 3 * most_guides<Source>), at_least_one(most_guides<Source>)>;
 
   void keep(double* x) const noexcept {
     for (int r = 0; r < size_; ++r) x[r] = trial_.x[r];

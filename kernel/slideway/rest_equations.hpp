@@ -7,12 +7,9 @@
 
 namespace slideway {
 
-/// The largest problem of guides at rest.
+/// The largest problem of guides at rest, before it is held to what the HLCP solver takes.
 template <class Source>
-constexpr int rest_order() noexcept {
-  const int all = most_rows<Source>() + 2 * most_guides<Source>();
-  return at_least_one(all < hlcp_max_order ? all : hlcp_max_order);
-}
+inline constexpr int rest_order = most_rows<Source> + 2 * most_guides<Source>;
 
 /// What one evaluation leaves to the next.
 template <class Size>
@@ -44,7 +41,8 @@ class RestEquations {
  public:
   using Size = typename Source::Size;
   static constexpr int n_free = at_least_one(Size::coordinates), n_guides = at_least_one(Size::guides),
-                       n_contacts = at_least_one(Size::contacts), order = rest_order<Source>();
+                       n_contacts = at_least_one(Size::contacts),
+                       order = at_least_one(rest_order<Source> < hlcp_max_order ? rest_order<Source> : hlcp_max_order);
 
   RestEquations(const Source& source, int part, Friction<Size>& fr, Problem<Source>& sliding) noexcept
       : source_(source),
@@ -251,7 +249,7 @@ class RestEquations {
   double coefficient_[n_guides];  ///< mu_static, or mu of those that leave
   double known_[n_guides] = {};   ///< friction that is not an unknown, N
 
-  Basis<Source, at_least_one(most_rows<Source>() + most_guides<Source>())> basis_{source_};
+  Basis<Source, at_least_one(most_rows<Source> + most_guides<Source>)> basis_{source_};
   int contact_rows_ = 0;
 
   int bound_[n_guides], bound_count_ = 0;  ///< guides whose friction is an unknown
