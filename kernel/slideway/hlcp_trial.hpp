@@ -428,9 +428,9 @@ inline void correct(const Hlcp<Capacity>& problem, int n, const double* rest, Tr
   }
 }
 
-/// One step of iterative refinement; it depends on the data and the signs alone.
+/// One step of iterative refinement; it depends on the data and the signs alone. Seldom called.
 template <int Capacity>
-inline void refine(const Hlcp<Capacity>& problem, int n, Trial<Capacity>& trial) noexcept {
+[[gnu::noinline]] inline void refine(const Hlcp<Capacity>& problem, int n, Trial<Capacity>& trial) noexcept {
   double rest[Capacity] = {};
   residual(problem, n, trial, rest);
   correct(problem, n, rest, trial);
