@@ -190,7 +190,7 @@ template <class Source, class Size = typename Source::Size>
                               Reaction<Size>& r, Report& report) noexcept {
   const auto& table = source.tables;
   Friction<Size>& fr = w.friction;
-  const int rows = table.first_row[part + 1] - table.first_row[part];
+  const int rows = row_count(table, part);
   const Index* contact = table.rough_contact + table.first_row[part];
   each_guide_in_part(source, part, [&](int g) {  // the sliding problem leaves alone what a row does not reach
     each_in_part(source, part, [&](int f) {
@@ -257,7 +257,7 @@ template <class Source, class Size = typename Source::Size>
 template <class Source>
 [[gnu::noinline, gnu::cold]] int guide_to_blame(const Source& source, int part, const Problem<Source>& hlcp) noexcept {
   const auto& table = source.tables;
-  const int rows = table.first_row[part + 1] - table.first_row[part];
+  const int rows = row_count(table, part);
   int blamed = none;
   each_guide_in_part(source, part, [&](int g) {
     if (blamed != none) return;
@@ -275,16 +275,17 @@ template <class Source>
   return blamed != none ? blamed : table.rough_guide[table.first_guide[part]];
 }
 
-/// How many rough contacts a part has: known to the compiler where the scene is, and parts are alike.
+/// How many rough contacts a part has, as a std::integral_constant where the compiler knows and one part has them all.
 template <class Source>
 SLIDEWAY_INLINE auto rows_of(const Source& source, int part) noexcept {
   if constexpr (Source::folds) {
-    if constexpr (Source::tables.most_rows == Source::tables.rough)
+    if constexpr (Source::tables.most_rows == Source::tables.rough) {
       return std::integral_constant<int, Source::tables.rough>{};
-    else
-      return source.tables.first_row[part + 1] - source.tables.first_row[part];
+    } else {
+      return row_count(source.tables, part);
+    }
   } else {
-    return source.tables.first_row[part + 1] - source.tables.first_row[part];
+    return row_count(source.tables, part);
   }
 }
 
@@ -366,7 +367,7 @@ template <bool all_slip, class Source, class Size = typename Source::Size>
   for_each<Source, Size::coordinates>(table.parts, [&](int part) SLIDEWAY_FOLD {
     // Several answers of one part say nothing of the others: another may have none.
     if (status != Status::ok && status != Status::not_unique) return;
-    if (table.first_row[part] == table.first_row[part + 1]) return;
+    if (row_count(table, part) == 0) return;
     const Status solved = solve_part<all_slip>(source, part, at, solving, rests, w, m, r, report);
     if (solved != Status::ok) status = solved;
   });

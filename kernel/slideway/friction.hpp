@@ -93,6 +93,30 @@ SLIDEWAY_INLINE void each_in_part(const Source& source, int part, F&& f) noexcep
                                       [&](int i) SLIDEWAY_FOLD { f(table.in_part[first + i]); });
 }
 
+/// f(rough guide) for each of a part.
+template <class Source, class F>
+SLIDEWAY_INLINE void each_guide_in_part(const Source& source, int part, F&& f) noexcept {
+  const auto& table = source.tables;
+  const int first = table.first_guide[part];
+  for_each<Source, most_guides<Source>>(table.first_guide[part + 1] - first,
+                                        [&](int i) SLIDEWAY_FOLD { f(table.rough_guide[first + i]); });
+}
+
+/// How many rough contacts a part has.
+template <class Size>
+constexpr int row_count(const Tables<Size>& table, int part) noexcept {
+  return table.first_row[part + 1] - table.first_row[part];
+}
+
+/// f(row, contact) for each rough contact of a part.
+template <class Source, class F>
+SLIDEWAY_INLINE void each_row_in_part(const Source& source, int part, F&& f) noexcept {
+  const auto& table = source.tables;
+  const int first = table.first_row[part];
+  for_each<Source, most_rows<Source>>(row_count(table, part),
+                                      [&](int m) SLIDEWAY_FOLD { f(m, table.rough_contact[first + m]); });
+}
+
 /// sum x_f y_f over the free coordinates of a part.
 template <class Source, class Size = typename Source::Size>
 SLIDEWAY_INLINE double inner(const Source& source, int part, const double* x, const double* y) noexcept {
@@ -291,8 +315,8 @@ SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<S
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
-  constexpr bool room = most_rows < Source >> 1;
-  const bool two = room && scene.guide[g].contacts == 2, other_two = room && scene.guide[o].contacts == 2;
+  constexpr int room = most_rows<Source>;
+  const bool two = room > 1 && scene.guide[g].contacts == 2, other_two = room > 1 && scene.guide[o].contacts == 2;
   const bool clear = table.ideal > 0;
   const auto& N = clear ? fr.N_clear[g] : fr.N[g];
   const auto& E = clear ? fr.E_clear[g] : fr.E[g];
@@ -340,24 +364,6 @@ SLIDEWAY_INLINE bool assemble(const Source& source, const Kinematics<Size>& k, c
   });
   for_each<Source, Size::contacts>(table.contacts, [&](int c) SLIDEWAY_FOLD { fr.face[c] = 1; });
   return table.ideal == 0 || eliminate_ideal(source, k, d, gains, fr, r);
-}
-
-/// f(rough guide) for each of a part.
-template <class Source, class F>
-SLIDEWAY_INLINE void each_guide_in_part(const Source& source, int part, F&& f) noexcept {
-  const auto& table = source.tables;
-  const int first = table.first_guide[part];
-  for_each<Source, most_guides<Source>>(table.first_guide[part + 1] - first,
-                                        [&](int i) SLIDEWAY_FOLD { f(table.rough_guide[first + i]); });
-}
-
-/// f(row, contact) for each rough contact of a part.
-template <class Source, class F>
-SLIDEWAY_INLINE void each_row_in_part(const Source& source, int part, F&& f) noexcept {
-  const auto& table = source.tables;
-  const int first = table.first_row[part];
-  for_each<Source, most_rows<Source>>(table.first_row[part + 1] - first,
-                                      [&](int m) SLIDEWAY_FOLD { f(m, table.rough_contact[first + m]); });
 }
 
 /// The rows, S, S* and b of a part's rough contacts. False when rank is lost. Cost: guides^2 times the overlap of their

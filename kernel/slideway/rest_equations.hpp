@@ -49,7 +49,7 @@ class RestEquations {
         table_(source.tables),
         part_(part),
         first_row_(table_.first_row[part]),
-        rows_(table_.first_row[part + 1] - first_row_),
+        rows_(row_count(table_, part)),
         fr_(fr),
         sliding_(sliding) {}
 
