@@ -1,4 +1,4 @@
-// What docs/charts.md shows, by name.
+// What can be drawn, by name.
 #pragma once
 
 #include <functional>

@@ -1,21 +1,20 @@
 // slideway-charts: speed against accuracy, and where methods fail. `slideway chart` and `slideway atlas` are handed to
-// it; `docs` draws all that docs/charts.md shows.
+// it; `docs` draws docs/charts and writes bench/results.
 #include <fmt/format.h>
 #include <scene_source.hpp>
-
-#include <CLI/CLI.hpp>
-#include <stdexcept>
+#include <verbs.hpp>
 
 #include "boards.hpp"
 
 namespace slideway::charts {
 namespace {
 
-enum Exit : int { good = 0, refused = 1, bad_input = 2 };
+using app::good, app::refused, app::bad_input;
 
 struct Options {
-  std::string scene, atlas, directory = ".", root = SLIDEWAY_SOURCE_DIR;
-  std::vector<std::string> settings, names;
+  app::SceneOptions scene;
+  std::string atlas, directory = ".", root = SLIDEWAY_SOURCE_DIR;
+  std::vector<std::string> names;
   bool quick = false;
 };
 
@@ -36,10 +35,10 @@ const Entry& find(const std::vector<Entry>& entries, const std::string& name) {
 }
 
 int chart(const Options& options) {
-  const auto scene = app::load_scene(options.scene, options.settings, app::Start::checked);
+  const auto scene = app::load_scene(options.scene.scene, options.scene.settings, app::Start::checked);
   if (!scene) return bad_input;
-  std::string command = "slideway chart " + options.scene;
-  for (const std::string& setting : options.settings) command += " --set " + setting;
+  std::string command = "slideway chart " + options.scene.scene;
+  for (const std::string& setting : options.scene.settings) command += " --set " + setting;
   return draw_scene(*scene, session_of(options, command, options.directory, options.directory)) ? good : refused;
 }
 
@@ -71,10 +70,7 @@ int run(int count, char** arguments) {
   CLI::App* one = command.add_subcommand("chart",
                                          "Chart a scene's error against time: SCENE_time.svg, _evaluations, "
                                          "_forces, SCENE.json");
-  one->add_option("SCENE", options.scene, "A scene file, - for standard input, or the name of a shipped scene")
-      ->required();
-  one->add_option("--set", options.settings, "Replace one value of the scene, as in guide.slot.mu=0.3")
-      ->allow_extra_args(false);
+  app::add_scene_options(*one, options.scene);
   one->callback([&] { status = chart(options); });
 
   CLI::App* map = command.add_subcommand("atlas", "Map where methods fail: NAME_*.svg, NAME.json");
@@ -82,7 +78,7 @@ int run(int count, char** arguments) {
       ->required();
   map->callback([&] { status = atlas_map(options); });
 
-  CLI::App* all = command.add_subcommand("docs", "All that docs/charts.md shows, or what is named");
+  CLI::App* all = command.add_subcommand("docs", "Everything into docs/charts and bench/results, or what is named");
   all->add_option("NAME", options.names, "A charted scene, engines, hlcp_kind, hlcp_hard, growth, detail, or a map");
   all->add_option("--root", options.root, "Write to DIR/docs/charts and DIR/bench/results");
   all->callback([&] { status = docs(options); });
@@ -109,6 +105,6 @@ int main(int count, char** arguments) {
     return slideway::charts::run(count, arguments);
   } catch (const std::exception& error) {
     fmt::print(stderr, "slideway-charts: {}\n", error.what());
-    return 2;
+    return slideway::app::bad_input;
   }
 }

@@ -11,6 +11,13 @@ struct CartesianEquations::Point {
   double rate;
 };
 
+/// A body's joint on its parent: its point of the parent, the parent's angle, the direction of its first axis.
+struct CartesianEquations::JointFrame {
+  Point base;
+  double parent_angle;
+  Vec2 along;
+};
+
 namespace {
 
 Rotation turn_of(int body, const double* x) {
@@ -35,13 +42,16 @@ CartesianEquations::Point CartesianEquations::point(int body, Vec2 at, const dou
           rate};
 }
 
+CartesianEquations::JointFrame CartesianEquations::joint_frame(int i, const double* x, const double* u) const {
+  const Body& body = scene_.body[i];
+  const Rotation frame = turn_of(body.parent, x) * Rotation{body.turn.x, body.turn.y};
+  return {point(body.parent, body.at, x, u), body.parent == ground ? 0 : x[3 * body.parent + 2], {frame.c, frame.s}};
+}
+
 void CartesianEquations::from_joints(const double* q, const double* v, double* x, double* u) const {
   for (int i = 0, j = 0; i < scene_.bodies; ++i) {
     const Body& body = scene_.body[i];
-    const Point base = point(body.parent, body.at, x, u);
-    const double parent_angle = body.parent == ground ? 0 : x[3 * body.parent + 2];
-    const Rotation frame = turn_of(body.parent, x) * Rotation{body.turn.x, body.turn.y};
-    const Vec2 along{frame.c, frame.s};
+    const auto [base, parent_angle, along] = joint_frame(i, x, u);
     double *place = x + 3 * i, *rate = u + 3 * i;
     Vec2 slide{}, slide_rate{};
     place[2] = parent_angle + body.angle;
@@ -70,10 +80,7 @@ void CartesianEquations::from_joints(const double* q, const double* v, double* x
 void CartesianEquations::to_joints(const double* x, const double* u, double* q, double* v) const {
   for (int i = 0, j = 0; i < scene_.bodies; ++i) {
     const Body& body = scene_.body[i];
-    const Point base = point(body.parent, body.at, x, u);
-    const double parent_angle = body.parent == ground ? 0 : x[3 * body.parent + 2];
-    const Rotation frame = turn_of(body.parent, x) * Rotation{body.turn.x, body.turn.y};
-    const Vec2 along{frame.c, frame.s};
+    const auto [base, parent_angle, along] = joint_frame(i, x, u);
     const Vec2 slide = Vec2{x[3 * i], x[3 * i + 1]} - base.place;
     const Vec2 slide_rate = Vec2{u[3 * i], u[3 * i + 1]} - base.velocity - base.rate * perp(slide);
     if (body.joint == Joint::prismatic || body.joint == Joint::planar) {

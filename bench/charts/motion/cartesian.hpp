@@ -54,6 +54,8 @@ class CartesianEquations {
 
  private:
   struct Point;
+  struct JointFrame;
+  JointFrame joint_frame(int body, const double* x, const double* u) const;
   Point point(int body, Vec2 at, const double* x, const double* u) const;
   void constrain(const Point& a, const Point& b, Vec2 direction, bool turns, double Phi_target, double rate_target,
                  double target, bool position);
