@@ -2,6 +2,7 @@
 // it; `docs` draws docs/charts and writes bench/results.
 #include <fmt/format.h>
 #include <scene_source.hpp>
+#include <stdexcept>
 #include <verbs.hpp>
 
 #include "boards.hpp"
@@ -18,8 +19,14 @@ struct Options {
   bool quick = false;
 };
 
+/// Its directories are made before the work.
 Session session_of(const Options& options, const std::string& command, const std::filesystem::path& charts,
                    const std::filesystem::path& results) {
+  for (const std::filesystem::path& directory : {charts, results}) {
+    std::error_code failure;
+    std::filesystem::create_directories(directory, failure);
+    if (failure) throw std::runtime_error(directory.string() + ": " + failure.message() + "; name another directory");
+  }
   return {options.quick, charts, results, provenance(command, SLIDEWAY_SOURCE_DIR)};
 }
 

@@ -10,7 +10,6 @@ namespace slideway::charts {
 namespace {
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::create_directories(file.parent_path());
   std::ofstream out(file);
   out << text;
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");

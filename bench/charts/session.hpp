@@ -15,7 +15,7 @@ using Progress = std::function<void(double part, const std::string& what)>;
 
 struct Session {
   bool quick = false;  ///< coarse settings alone, to see that everything still draws: nothing for docs
-  std::filesystem::path charts, results;  ///< directories
+  std::filesystem::path charts, results;  ///< directories that exist
   Provenance made;
 
   /// Shown on a terminal only.
