@@ -9,6 +9,7 @@
 #include <random>
 #include <slideway/hlcp.hpp>
 #include <string>
+#include <support/litter.hpp>
 #include <type_traits>
 #include <utility>
 
@@ -416,18 +417,12 @@ TEST(HlcpEdges, ASolutionByMinorsHasTheSignsThatWereDecided) {
   }
 }
 
-/// Leaves what is no number where the solver's arrays will be.
-[[gnu::noinline]] void litter_stack() {
-  volatile double litter[2048];
-  for (volatile double& x : litter) x = std::numeric_limits<double>::quiet_NaN();
-}
-
 TEST(HlcpEdges, ASolutionByMinorsReadsNothingThatWasNotSet) {
   // x = 0 with a row of zeros: no pattern can be solved with. Arrays go in pairs, and order 3 leaves one half empty.
   const Hlcp<3> problem = hlcp<3>({{{1.0, -1.5, 1.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}}},
                                   {{{-1.5, 0.0, -2.75}, {0.0, 0.0, 0.0}, {0.0, -3.75, -1.25}}}, {0.0, 0.0, 0.0});
   for (unsigned code = 0; code < 8; ++code) {
-    litter_stack();
+    slideway::test::litter_stack();
     const HlcpSolution<3> solution = answer(problem, code, {NotUnique::continue_along_signs});
     EXPECT_EQ(name(solution.status), std::string("ok")) << "from " << code;
     EXPECT_EQ(name(solution.uniqueness), std::string("refuted")) << "from " << code;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <random>
 #include <slideway/step.hpp>
+#include <support/litter.hpp>
 #include <vector>
 
 // Doubles are promoted on purpose: what is compared with is computed in long double.
@@ -662,6 +663,7 @@ Stepper stepper_for(const Mechanism& m) {
 
 void expect_agreement(const Stepper& stepper, const Mechanism& m, const Instant& truth, Comparison& comparison) {
   Stepper::Reaction r;
+  slideway::test::litter_stack();
   const Report report = stepper.reaction(m.state, m.inputs, r);
   ASSERT_EQ(report.status, Status::ok) << sentence(report.status);
   EXPECT_NE(report.uniqueness, slideway::Uniqueness::refuted);
@@ -738,6 +740,7 @@ TEST(Dynamics, AsManySolutionsAsSignPatternsHold) {
       expect_agreement(stepper, m, truth, comparison);
     } else {
       Stepper::Reaction r;
+      slideway::test::litter_stack();
       const Status status = stepper.reaction(m.state, m.inputs, r).status;
       EXPECT_EQ(status, truth.solutions == 0 ? Status::no_solution : Status::not_unique)
           << truth.solutions << " solutions, " << name(status);

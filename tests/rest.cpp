@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <support/litter.hpp>
 #include <support/steppers.hpp>
 
 namespace {
@@ -66,6 +67,29 @@ TEST(Block, PushedWithHalfOfWhatFrictionHoldsDoesNotMoveOnceAtRest) {
     EXPECT_LT(most, 1e-13) << name(method);
     RecordProperty(std::string(name(method)), std::to_string(most * 1e15) + "e-15 m");
   }
+}
+
+TEST(Block, RestsByTheSameBitsWithAFrictionlessOneBesideIt) {
+  Scene<Room> pile = scene_of("pushed_block");  // with a second block on it: the lower guide does not reach that
+  pile.bodies = pile.guides = 2;
+  pile.body[1] = pile.body[0];
+  pile.body[1].q[1] = 0.2;
+  pile.guide[1] = pile.guide[0];
+  pile.guide[1].slider = 1;
+  pile.guide[1].rail = 0;
+  pile.guide[1].origin = {0, 0.2};
+  Scene<Room> both = pile;
+  both.bodies = both.guides = 3;
+  both.body[2] = pile.body[0];
+  both.guide[2] = pile.guide[0];
+  both.guide[2].slider = 2;
+  both.guide[2].mu = both.guide[2].mu_static = 0;
+  const auto r = reaction_at_start(RunStepper(pile));
+  litter_stack();  // parts without ideal rows use none of what those with some do
+  const auto beside = reaction_at_start(RunStepper(both));
+  for (int c = 0; c < 4; ++c) EXPECT_EQ(beside.lambda[c], r.lambda[c]);
+  for (int g = 0; g < 2; ++g) EXPECT_EQ(beside.friction[g], r.friction[g]);
+  for (int j = 0; j < 6; ++j) EXPECT_EQ(beside.acceleration[j], r.acceleration[j]);
 }
 
 TEST(Block, BreaksAwayByMuStaticAndSlidesByMu) {

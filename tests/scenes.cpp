@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/allocations.hpp"
+#include "support/litter.hpp"
 
 namespace {
 
@@ -285,6 +286,24 @@ TEST_P(SceneRun, AsksNothingOfTheHeap) {
     const std::size_t after = slideway::test::allocations();
     EXPECT_EQ(after - before, 0u) << name(method);
     EXPECT_TRUE(state.steps == 20 || method == Method::kinematic) << name(method);
+  }
+}
+
+TEST_P(SceneRun, ReadsNothingThatWasNotSet) {
+  const slideway::io::SceneFile file = read(GetParam().scene);
+  Stepper stepper(file.scene);
+  for (const Method method : slideway::methods) {
+    stepper.method = method;
+    auto clean = stepper.start(), littered = clean;
+    for (int k = 0; k < 3; ++k) {
+      const Status expected = stepper.step(clean, file.run.dt).status;
+      slideway::test::litter_stack();
+      EXPECT_EQ(stepper.step(littered, file.run.dt).status, expected) << name(method);
+    }
+    for (int j = 0; j < stepper.source.tables.coordinates; ++j) {
+      EXPECT_EQ(littered.q[j], clean.q[j]) << name(method);
+      EXPECT_EQ(littered.v[j], clean.v[j]) << name(method);
+    }
   }
 }
 

@@ -26,7 +26,7 @@ struct Friction {
   double N[n_guides][n_free];        ///< N~ of a rough guide's first contact; of its second N~ + along E~
   double T[n_guides][n_free];        ///< T~ of the first; of the second T~ - across E~
   double E[n_guides][n_free];        ///< the slider's turning against the rail
-  double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used when there are any
+  double N_clear[n_guides][n_free];  ///< N^ and E^: orthogonal to the ideal rows; used where their part has any
   double E_clear[n_guides][n_free];
   double right[n_contacts];    ///< b of each rough contact
   double norm[n_contacts];     ///< |N~| of each rough contact
@@ -295,8 +295,8 @@ SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k,
   } else {
     to_metric(source, d, link.fill, link.fills, N, T);
   }
-  if (table.ideal > 0) clear_of_ideal(source, part, fr, N, fr.N_clear[g]);
-  if (table.ideal > 0 && two) clear_of_ideal(source, part, fr, E, fr.E_clear[g]);
+  if (table.has_ideal[part]) clear_of_ideal(source, part, fr, N, fr.N_clear[g]);
+  if (table.has_ideal[part] && two) clear_of_ideal(source, part, fr, E, fr.E_clear[g]);
   double moved = 0, turned = 0;
   for_each<Source, Size::coordinates>(link.fills, [&](int e) SLIDEWAY_FOLD {
     const int f = link.fill[e];
@@ -307,17 +307,17 @@ SLIDEWAY_INLINE void guide_rows(const Source& source, const Kinematics<Size>& k,
   if (two) fr.right[c + 1] = fr.target[c + 1] - moved - s.along * turned;
 }
 
-/// S and S* between the contacts of rough guides g (rows) and o (columns): with s and f for along and across,
+/// S and S* between the contacts of a part's rough guides g (rows) and o (columns): with s and f for along and across,
 ///   S_ij = NN + s_i EN + s_j NE + s_i s_j EE,  S*_ij = sigma_o (NT + s_i ET - f_j (NE + s_i EE)),  s_0 = f_0 = 0.
 template <class Source, class Size = typename Source::Size>
-SLIDEWAY_INLINE void couple(const Source& source, int g, int o, const Friction<Size>& fr,
+SLIDEWAY_INLINE void couple(const Source& source, int part, int g, int o, const Friction<Size>& fr,
                             Problem<Source>& hlcp) noexcept {
   const auto& table = source.tables;
   const auto& scene = source.scene;
   const Link<Size>& link = table.guide[g];
   constexpr int room = most_rows<Source>;
   const bool two = room > 1 && scene.guide[g].contacts == 2, other_two = room > 1 && scene.guide[o].contacts == 2;
-  const bool clear = table.ideal > 0;
+  const bool clear = table.has_ideal[part];
   const auto& N = clear ? fr.N_clear[g] : fr.N[g];
   const auto& E = clear ? fr.E_clear[g] : fr.E[g];
   const auto& N_o = clear ? fr.N_clear[o] : fr.N[o];
@@ -375,12 +375,12 @@ SLIDEWAY_INLINE bool assemble_part(const Source& source, const Kinematics<Size>&
   bool independent = true;
   each_guide_in_part(source, part, [&](int g) SLIDEWAY_FOLD { guide_rows(source, k, d, part, g, fr); });
   each_guide_in_part(source, part, [&](int g) SLIDEWAY_FOLD {
-    each_guide_in_part(source, part, [&](int o) SLIDEWAY_FOLD { couple(source, g, o, fr, hlcp); });
+    each_guide_in_part(source, part, [&](int o) SLIDEWAY_FOLD { couple(source, part, g, o, fr, hlcp); });
   });
   each_row_in_part(source, part, [&](int m, int c) SLIDEWAY_FOLD {
     hlcp.b[m] = fr.right[c];
     double squared = 0.5 * (hlcp.plus[m][m] + hlcp.minus[m][m]);
-    if (table.ideal > 0) {  // S has what the ideal rows leave of the row
+    if (table.has_ideal[part]) {  // S has what the ideal rows leave of the row
       const int g = table.guide_of[c];
       const bool first = c == table.first_contact[g];
       const double whole =

@@ -92,8 +92,8 @@ class RestEquations {
   }
 
  protected:
-  const double* N(int g) const noexcept { return table_.ideal > 0 ? fr_.N_clear[g] : fr_.N[g]; }
-  const double* E(int g) const noexcept { return table_.ideal > 0 ? fr_.E_clear[g] : fr_.E[g]; }
+  const double* N(int g) const noexcept { return table_.has_ideal[part_] ? fr_.N_clear[g] : fr_.N[g]; }
+  const double* E(int g) const noexcept { return table_.has_ideal[part_] ? fr_.E_clear[g] : fr_.E[g]; }
   int contact(int row) const noexcept { return table_.rough_contact[first_row_ + row]; }
   bool is_second(int c) const noexcept { return c != table_.first_contact[table_.guide_of[c]]; }
 
@@ -156,7 +156,7 @@ class RestEquations {
       const double sigma = -m.mode[o] * coefficient_[o];
       if (sigma == fr_.sigma[o]) continue;
       fr_.sigma[o] = sigma;
-      each_guide_in_part(source_, part_, [&](int g) { couple(source_, g, o, fr_, sliding_); });
+      each_guide_in_part(source_, part_, [&](int g) { couple(source_, part_, g, o, fr_, sliding_); });
     }
   }
 

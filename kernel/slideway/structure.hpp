@@ -79,6 +79,7 @@ struct Tables {
   Index parts = 0, most_rows = 0, most_guides = 0;  ///< rough contacts and rough guides of the largest part
   Index part_of[n_coordinates] = {};                ///< of a free coordinate
   Index part_of_ideal[n_ideal] = {};                ///< of an ideal row
+  bool has_ideal[n_coordinates] = {};               ///< has a part any?
   Index first_in_part[n_coordinates + 1] = {}, in_part[n_coordinates] = {};  ///< free coordinates, part by part
   Index first_guide[n_coordinates + 1] = {}, rough_guide[n_guides] = {};     ///< rough guides, part by part
   Index first_row[n_coordinates + 1] = {};                                   ///< into rough_contact
@@ -223,23 +224,22 @@ constexpr void tie(const Link<Size>& l, Index free, Index* name) noexcept {
   }
 }
 
+/// A link that reaches no free coordinate counts to the first part.
+template <class Size>
+constexpr Index part_of(const Tables<Size>& t, const Link<Size>& l) noexcept {
+  return l.fills == 0 ? Index{0} : t.part_of[l.fill[0]];
+}
+
 /// With ideal rows to be clear of, a row reaches every coordinate of its part.
 template <class Size>
-constexpr void fill_part(const Tables<Size>& t, const bool* has_ideal, Link<Size>& l) noexcept {
-  if (l.fills == 0) return;
-  const int part = t.part_of[l.fill[0]];
-  if (!has_ideal[part]) return;
+constexpr void fill_part(const Tables<Size>& t, Link<Size>& l) noexcept {
+  const int part = part_of(t, l);
+  if (!t.has_ideal[part]) return;
   l.fills = 0;
   for (int i = t.first_in_part[part]; i < t.first_in_part[part + 1]; ++i) {
     l.filled[t.in_part[i]] = true;
     l.fill[l.fills++] = t.in_part[i];
   }
-}
-
-/// A link that reaches no free coordinate counts to the first part.
-template <class Size>
-constexpr Index part_of(const Tables<Size>& t, const Link<Size>& l) noexcept {
-  return l.fills == 0 ? Index{0} : t.part_of[l.fill[0]];
 }
 
 template <class Size>
@@ -252,17 +252,16 @@ constexpr void derive_parts(const Scene<Size>& scene, Tables<Size>& t) noexcept 
   for (int f = 0; f < t.free; ++f) t.part_of[f] = name[f] == f ? t.parts++ : t.part_of[name[f]];
   if (t.parts == 0) t.parts = 1;
 
-  bool has_ideal[n] = {};
   for (int p = 0; p < scene.pins; ++p) {
     t.part_of_ideal[2 * p] = t.part_of_ideal[2 * p + 1] = part_of(t, t.pin[p]);
-    has_ideal[part_of(t, t.pin[p])] = true;
+    t.has_ideal[part_of(t, t.pin[p])] = true;
   }
   for (int g = 0; g < scene.guides; ++g) {
     if (t.is_rough[g]) continue;
     for (int c = 0; c < scene.guide[g].contacts; ++c) {
       t.part_of_ideal[t.row_of[t.first_contact[g] + c]] = part_of(t, t.guide[g]);
     }
-    has_ideal[part_of(t, t.guide[g])] = true;
+    t.has_ideal[part_of(t, t.guide[g])] = true;
   }
   Index coordinates = 0, guides = 0, rows = 0;
   for (int part = 0; part < t.parts; ++part) {
@@ -288,8 +287,8 @@ constexpr void derive_parts(const Scene<Size>& scene, Tables<Size>& t) noexcept 
     t.most_rows = most_rows > t.most_rows ? most_rows : t.most_rows;
     t.most_guides = most_guides > t.most_guides ? most_guides : t.most_guides;
   }
-  for (int g = 0; g < scene.guides; ++g) fill_part(t, has_ideal, t.guide[g]);
-  for (int p = 0; p < scene.pins; ++p) fill_part(t, has_ideal, t.pin[p]);
+  for (int g = 0; g < scene.guides; ++g) fill_part(t, t.guide[g]);
+  for (int p = 0; p < scene.pins; ++p) fill_part(t, t.pin[p]);
 }
 
 template <class Size>
