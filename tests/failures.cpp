@@ -80,6 +80,42 @@ TEST(FailuresOnTheWay, AreRefusedThere) {
                             Status::not_unique);
 }
 
+TEST(AStepOverAllPosesWithoutAnAnswer, IsRefusedOrSaysThatItTurnedFar) {
+  // Between atan(5) and its mirror image, from 0.0588 to 0.0982 s, there is no solution.
+  const std::vector<std::string> settings = {"drive.motor.rate=10", "body.rod.v=[-20]"};
+  for (const Method method : methods) {
+    const RunStepper stepper = stepper_of("slider_crank_equal", method, settings);
+    RunState state = stepper.start();
+    const Report over = stepper.step(state, 0.11);
+    if (is_located(method)) {
+      EXPECT_EQ(over.status, Status::singular_constraints) << name(method) << ": " << name(over.status);
+    } else {
+      EXPECT_EQ(over.status, Status::ok) << name(method) << ": " << name(over.status);
+      EXPECT_GE(over.unlocated_events, 1) << name(method);
+    }
+    state = stepper.start();  // the rod turns by 0.4 rad
+    const Report before = stepper.step(state, 0.02);
+    EXPECT_EQ(before.status, Status::ok) << name(method) << ": " << name(before.status);
+    EXPECT_EQ(before.unlocated_events, 0) << name(method);
+  }
+}
+
+TEST(CloseContacts, HaveSixDigitsOrAreRefused) {
+  // A moment of 0.5 N m on feet at -+a, all but without friction. Of the product of the feet's squared row lengths,
+  // 1 + a^2 / J each, 4 a^2 / J is left, J = 0.01: 2^-30 of two such products at 2.2e-6 m.
+  for (const double a : {1e-3, 1e-4, 1e-5, 2.5e-6, 2e-6, 1e-6, 1e-7}) {
+    RunStepper stepper = stepper_of("overhung_slider", Method::rk4, {"guide.way.mu=1e-12"});
+    for (int k = 0; k < 2; ++k) stepper.source.scene.guide[0].contact[k].x = k == 0 ? -a : a;
+    stepper = RunStepper(stepper.source.scene);
+    RunStepper::Reaction r;
+    const Status status = stepper.reaction(stepper.start(), {}, r).status;
+    EXPECT_EQ(status, a < 2.2e-6 ? Status::singular_constraints : Status::ok) << a << ' ' << name(status);
+    if (status == Status::ok) {
+      EXPECT_NEAR(r.lambda[0] - r.lambda[1], 0.5 / a, 1e-6 * 0.5 / a) << a;
+    }
+  }
+}
+
 TEST(Continuing, GoesAlongTheSignsAndNamesTheGuide) {
   // docs/theory.md: feet (4, 6) N are followed, and it says so.
   for (const Method method : {Method::rk4, Method::rk4_located, Method::dop853_located}) {

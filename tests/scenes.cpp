@@ -77,6 +77,7 @@ const std::vector<Known> known = {
     {"slider_crank_equal", 1e-12, 1e-12, {{0, 1.3653981633974483, 2}, {1, -2.7307963267948966, -4}}},
     {"trammel_at_rest", 1e-13, 1e-13, {{0, 0.96, 0}, {1, 0.28, 0}, {2, 0, 0}}, Uniqueness::motion_only},
     {"crank_rocker", 1e-9, 1e-9, {{0, 1.1071487178, 0.6}, {1, 12.5663706144, 3}}},
+    {"crank_rocker_stiff", 1e-9, 1e-9, {{0, 1.1071487178, 0.6}, {1, 12.5663706144, 3}}},
     {"crank_rocker_weightless", 1e-9, 1e-9, {{0, 1.1071487178, 0.6}, {1, 12.5663706144, 3}}},
     {"crank_rocker_two_contacts", 1e-9, 1e-9, {{0, 1.1071487178, 0.6}, {1, 12.5663706144, 3}}},
     {"crank_rocker_free",

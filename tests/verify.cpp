@@ -193,14 +193,15 @@ using testing::Values;
 
 // v_engine_8 and v_engine_16 take minutes: `slideway verify v_engine_16`.
 const auto methods_of_order = Values("--method rk4", "--method rk4_located", "--method dop853_located");
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, VerifyFull,
-    Combine(methods_of_order,
-            Values("belt", "block_on_plane", "crank_rocker_free", "crank_rocker_offset", "crank_rocker_two_contacts",
-                   "crank_rocker_weightless", "elliptic_trammel", "four_bar_chain", "gantry", "high_mass_ratio",
-                   "overhung_slider", "painleve_klein", "painleve_rod", "pushed_block", "quick_return",
-                   "rod_on_two_guides", "slider_crank_driven", "slider_crank_equal", "squeezer", "trammel_at_rest")),
-    test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, VerifyFull,
+                         Combine(methods_of_order,
+                                 Values("belt", "block_on_plane", "crank_rocker_free", "crank_rocker_offset",
+                                        "crank_rocker_two_contacts", "crank_rocker_stiff", "crank_rocker_weightless",
+                                        "elliptic_trammel", "four_bar_chain", "gantry", "high_mass_ratio",
+                                        "overhung_slider", "painleve_klein", "painleve_rod", "pushed_block",
+                                        "quick_return", "rod_on_two_guides", "slider_crank_driven",
+                                        "slider_crank_equal", "squeezer", "trammel_at_rest")),
+                         test_name);
 INSTANTIATE_TEST_SUITE_P(LongScenes, VerifyFull,
                          Combine(Values("--method rk4"), Values("slider_crank", "v_engine_2", "v_engine_4")),
                          test_name);

@@ -46,7 +46,6 @@ MeasureOptions how_to_measure(const Session& session, const std::string& name) {
 }
 
 // --- error against time
-// ------------------------------------------------------------------------------------------------
 
 void print_cheapest(const std::string& name, const io::Json& rows) {
   for (const auto& row : rows) {
@@ -80,7 +79,6 @@ void draw_embedded(const EmbeddedScene& embedded, const Session& session) {
 }
 
 // --- peers
-// -------------------------------------------------------------------------------------------------------------
 
 void print_least(const EngineComparison& comparison, const Engine& engine) {
   if (engine.version.empty()) fmt::print("missing: {}\n", engine.name);
@@ -126,7 +124,6 @@ void draw_hlcp(HlcpBoard board, const Session& session) {
 }
 
 // --- cost of a model
-// ---------------------------------------------------------------------------------------------------
 
 void draw_growth(const Session& session) {
   const std::vector<Growth> growth = measure_growth(repetitions(session), session.progress("growth"));
@@ -146,7 +143,6 @@ void draw_detail(const Session& session) {
 }
 
 // --- atlas
-// -------------------------------------------------------------------------------------------------------------
 
 void draw_map(const AtlasEntry& entry, const Session& session) {
   AtlasOptions how;

@@ -330,11 +330,18 @@ SLIDEWAY_INLINE Status solve_part(const Source& source, int part, const Moment<S
   if (!all_slip) each_guide_in_part(source, part, [&](int g) { any_rests = any_rests || rests[g]; });
   const Status status = any_rests ? hold(source, part, at, solving, rests, w, hlcp, m, r, report)
                                   : press(source, part, at.aim, solving, hlcp, m, w.friction, r, report);
+  signed char sign[at_least_one(most_rows<Source>)];
   each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
     m.norm[c] = w.friction.norm[c];
     m.own[c] = own_part(source, hlcp, i, c, m.norm[c]);
+    sign[i] = m.sign[c];
   });
-  return status;
+  if (status != Status::ok || at.aim == Aim::follow) return status;
+  const auto rows = rows_of(source, part);
+  if (rows <= 4) return has_digits<4>(hlcp, rows, sign) ? status : Status::singular_constraints;
+  // Proofs for more than four contacts bound |W^-1|.
+  if (report.uniqueness == Uniqueness::certified) return status;
+  return has_digits<at_least_one(most_rows<Source>)>(hlcp, rows, sign) ? status : Status::singular_constraints;
 }
 
 /// accelerate() without guides at rest, or with. Two functions, because what holds a guide at rest is not inlined, and

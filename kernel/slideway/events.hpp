@@ -167,7 +167,7 @@ class LocatedStep {
   /// and runs into its limit.
   Status advance_resolved(double done, double& s, const Phase<Size>& y, const Modes<Size>& m) noexcept {
     Status status = advance(done, s, y, m);
-    for (int k = 0; k < most_pieces && (status != Status::ok || (vary() && stages_.is_too_long(source_, s))); ++k) {
+    for (int k = 0; k < most_pieces && (status != Status::ok || is_too_long(s, y)); ++k) {
       if (!(0.5 * s > resolution(done, s))) return status;
       s *= 0.5;
       status = advance(done, s, y, m);
@@ -175,12 +175,17 @@ class LocatedStep {
     return status;
   }
 
-  /// Does a function change by more than half of itself?
+  /// Is the step of length s from y, that was made, longer than what it is meant to see?
+  bool is_too_long(double s, const Phase<Size>& y) const noexcept {
+    return turns_far(source_, y.q, stages_.to.q) || (vary() && stages_.is_too_long(source_, s));
+  }
+
+  /// Does a function change by more than an eighth of itself?
   bool vary() const noexcept {
     bool any = false;
     each_watched([&](int i) SLIDEWAY_FOLD {
       const double range = high_value_[i] - (low_[i] < start_.of[i] ? low_[i] : start_.of[i]);
-      any |= range > 0.5 * high_value_[i] && range > noise_[i];
+      any |= range > 0.125 * high_value_[i] && range > noise_[i];
     });
     return any;
   }

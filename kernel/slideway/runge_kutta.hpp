@@ -11,6 +11,21 @@ struct Phase {
   double q[at_least_one(Size::coordinates)], v[at_least_one(Size::coordinates)];
 };
 
+/// rad; it changes a guide's direction by an eighth: 1 - cos(1/2) = 0.12.
+inline constexpr double far_turn = 0.5;
+
+/// Does friction meet a coordinate that turns by more than `far_turn` between two poses? Contact forces may then have
+/// gone through infinity and come back, and there may have been none, or several, in between.
+template <class Source>
+SLIDEWAY_INLINE bool turns_far(const Source& source, const double* from, const double* to) noexcept {
+  const auto& table = source.tables;
+  double most = 0;
+  for_each<Source, Source::Size::coordinates>(table.coordinates, [&](int j) SLIDEWAY_FOLD {
+    if (table.motion[j] == Motion::turn) most = larger(most, std::fabs(to[j] - from[j]));
+  });
+  return table.rough > 0 && most > far_turn;
+}
+
 /// What all evaluations of one step have in common.
 template <class Source>
 struct Setting {
@@ -52,10 +67,9 @@ class Stages {
     return run(setting, tau, h, from, first, aim, m, before, after, std::make_integer_sequence<int, count>{});
   }
 
-  /// Do the doubts exceed a quarter of sum |b_k a_k|, over all coordinates, an angle counting as the scene's length
-  /// times it? For q'' = -w^2 q they are 0.06 of it at most at h w = 1/4 and half of it at least at h w = 2 (rk4;
-  /// dop853 from h w = 10), in any phase: there a step is long beside the motion's own times. Not where
-  /// they move nothing by 2^-40 of that length: at rest accelerations are rounding.
+  /// Is a step long beside the motion's own times? The doubts are a doubtful part of sum |b_k a_k|, over all
+  /// coordinates, an angle counting as the scene's length times it; and move something by 2^-40 of that length: at rest
+  /// accelerations are rounding.
   bool is_too_long(const Source& source, double h) const noexcept {
     double apart = 0, size = 0;
     for (int j = 0; j < source.tables.coordinates; ++j) {
@@ -69,7 +83,7 @@ class Stages {
       size += lever * terms;
       apart += lever * (std::fabs(doubt[0]) + std::fabs(doubt[1]));
     }
-    return apart > 0.25 * size && h * h * apart > 0x1p-40 * source.tables.length;
+    return apart > tableau.doubtful * size && h * h * apart > 0x1p-40 * source.tables.length;
   }
 
  private:

@@ -114,7 +114,8 @@ struct Report {
   int events = 0;             ///< located, in the order of time
   Event event[room];          ///< the first `events` are valid
   int unlocated_events = 0;   ///< changes of mode or contact sign that the step went over; by euler, which looks at a
-                              ///< step's start alone, that the step before went over
+                              ///< step's start alone, that the step before went over. One more where the step turns a
+                              ///< coordinate by more than `far_turn`, so that others may have gone unseen
   int guide = none;           ///< the guide that a refusal, or `refuted`, is about
   EnergyFlow energy;          ///< J, of this step
 };

@@ -393,6 +393,7 @@ Report BasicStepper<Source>::step(State& state, double dt, const Inputs& inputs)
   const Solving how = solving();
   const Setting setting{source, how, inputs, t, report};
   report.status = advance(setting, dt, state, y, m);
+  if (!is_located(method) && turns_far(source, state.q, y.q)) ++report.unlocated_events;
   // Rates are what moreau imposes, at q_m: turned to another pose they would spare the next step its impulse.
   if (report.status == Status::ok && stabilise == Stabilise::projection && method != Method::kinematic) {
     report.status =

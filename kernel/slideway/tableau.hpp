@@ -12,7 +12,8 @@ struct Tableau {
   static constexpr int stages = Stages;
   double a[Stages][Stages] = {}, b[Stages] = {};
   double doubt[2][Stages] =
-      {};  ///< two sums of accelerations that vanish with the step: 0 to orders below the method's
+      {};               ///< two sums of accelerations that vanish with the step: 0 to orders below the method's
+  double doubtful = 0;  ///< the part of sum |b_k a_k| above which the doubts say that a step is too long
   double c[Stages] = {};
   double aa[Stages][Stages] = {}, ba[Stages] = {};
 };
@@ -33,12 +34,17 @@ constexpr Tableau<Stages> completed(Tableau<Stages> t) noexcept {
 
 }  // namespace detail
 
+// What is doubtful, by q'' = -w^2 q in any phase. rk4's doubts are at most 0.026 of the sum at h w = 1/6 and at least
+// 0.038 at 2/3, where its own error is small. Those of order 8 are at most 0.0077 at h w = 1 and at least 0.0087 at 5;
+// there the widest gap between its stages, 0.27 h, hides no more than an eighth of what the solution changes by.
+
 /// Classical, order 4, in doubt by its two middle stages and by the midpoint rule (Kutta 1901; Hairer, Norsett and
 /// Wanner, Solving Ordinary Differential Equations I, II.1).
 inline constexpr Tableau<4> runge_kutta_4 =
     detail::completed<4>({{{0}, {0.5}, {0, 0.5}, {0, 0, 1}},
                           {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6},
-                          {{0, -1, 1, 0}, {1.0 / 6, -2.0 / 3, 1.0 / 3, 1.0 / 6}}});
+                          {{0, -1, 1, 0}, {1.0 / 6, -2.0 / 3, 1.0 / 3, 1.0 / 6}},
+                          1.0 / 32});
 
 /// Order 8, in doubt by its embedded estimators of orders 3 and 5 (Dormand and Prince; Hairer, Norsett and Wanner I,
 /// II.5 and II.10: DOP853).
@@ -65,6 +71,7 @@ inline constexpr Tableau<12> dormand_prince_8 = detail::completed<12>(
      {{-0.18980075407240762, 0, 0, 0, 0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, -0.4226823213237919,
        -0.1521609496625161, 0.20136540080403034, 0.02265179219836082},
       {0.01312004499419488, 0, 0, 0, 0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864,
-       -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294}}});
+       -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294}},
+     1.0 / 128});
 
 }  // namespace slideway

@@ -42,7 +42,8 @@ Cell judge_beyond(io::RunStepper stepper, const State& from, double dt, const Sh
   io::RunStepper judge = stepper;
   judge.method = Method::dop853_located;
   const ShortRun truth = short_run(judge, from, dt / 8, 8);
-  return truth.status == Status::ok && keeps_its_promise(stepper, from, dt, made) ? Cell::right : Cell::wrong;
+  if (truth.status == Status::ok && keeps_its_promise(stepper, from, dt, made)) return Cell::right;
+  return made.unlocated > 0 ? Cell::warned : Cell::wrong;
 }
 
 struct Approach {
@@ -67,7 +68,8 @@ void draw(const Approach& approach, const AtlasOptions& options, AtlasMap& map) 
       const ShortRun run = short_run(stepper, from, dt, 1);
       if (run.status != Status::ok) return dt > left ? Cell::refused_rightly : Cell::refused_wrongly;
       if (dt > left) return judge_beyond(stepper, from, dt, run);
-      return keeps_its_promise(stepper, from, dt, run) ? Cell::right : Cell::wrong;
+      if (keeps_its_promise(stepper, from, dt, run)) return Cell::right;
+      return run.unlocated > 0 ? Cell::warned : Cell::wrong;
     });
     const std::string who = slideway::name(method);
     const Line line{"the step ends there", {6, -1, false}, {{first, first}, {largest, largest}}, {}};
