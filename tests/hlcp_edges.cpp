@@ -429,6 +429,19 @@ TEST(HlcpEdges, ASolutionByMinorsReadsNothingThatWasNotSet) {
   }
 }
 
+TEST(HlcpEdges, BoundedAreAnswersWhoseInverseIsKnownToBeSmall) {
+  EXPECT_TRUE(answer(hlcp<2>({{{1.0, 0.0}, {0.0, 1.0}}}, {{{1.0, 0.0}, {0.0, 1.0}}}, {1.0, -1.0}), 0).bounded);
+  // The rows' angle is 2^-30: the determinant is that part of its terms.
+  const Matrix<2> rows = {{{1.0, 1.0}, {1.0, 1.0 + 0x1p-30}}};
+  const HlcpSolution<2> close = answer(hlcp<2>(rows, rows, {1.0, 1.0}), 0);
+  EXPECT_EQ(close.status, Status::ok);
+  EXPECT_FALSE(close.bounded);
+  const Matrix<3> unit = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+  EXPECT_TRUE(answer(hlcp<3>(unit, unit, {1.0, -1.0, 1.0}), 0).bounded);
+  const Matrix<3> flat = {{{1.0, 1.0, 0.0}, {1.0, 1.0 + 0x1p-30, 0.0}, {0.0, 0.0, 1.0}}};
+  EXPECT_FALSE(answer(hlcp<3>(flat, flat, {1.0, 1.0, 1.0}), 0).bounded);
+}
+
 // ---- what rounding hides above order four
 
 /// Neither `not_unique` nor ok and `refuted`, from any start.

@@ -237,6 +237,9 @@ template <class Source, class Size = typename Source::Size>
       m.sign[c] = sign;
     }
   }
+  signed char sign[at_least_one(most_rows<Source>)] = {};
+  for (int i = 0; i < rows; ++i) sign[i] = m.sign[contact[i]];
+  if (at.aim != Aim::follow && !has_digits(hlcp, rows, sign)) return Status::singular_constraints;
   double largest = 0;
   for (int i = 0; i < rows; ++i) {
     fr.face[contact[i]] = m.sign[contact[i]] < 0 ? -1 : 1;
@@ -309,6 +312,7 @@ SLIDEWAY_INLINE Status press(const Source& source, int part, Aim aim, const Solv
     if (answer.status != Status::ok) {
       return independent_contacts(hlcp, rows) ? answer.status : Status::singular_constraints;
     }
+    if (!answer.bounded && !has_digits(hlcp, rows, answer.sign)) return Status::singular_constraints;
   }
   each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
     r.lambda[c] = answer.x[i];
@@ -330,18 +334,11 @@ SLIDEWAY_INLINE Status solve_part(const Source& source, int part, const Moment<S
   if (!all_slip) each_guide_in_part(source, part, [&](int g) { any_rests = any_rests || rests[g]; });
   const Status status = any_rests ? hold(source, part, at, solving, rests, w, hlcp, m, r, report)
                                   : press(source, part, at.aim, solving, hlcp, m, w.friction, r, report);
-  signed char sign[at_least_one(most_rows<Source>)];
   each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
     m.norm[c] = w.friction.norm[c];
     m.own[c] = own_part(source, hlcp, i, c, m.norm[c]);
-    sign[i] = m.sign[c];
   });
-  if (status != Status::ok || at.aim == Aim::follow) return status;
-  const auto rows = rows_of(source, part);
-  if (rows <= 4) return has_digits<4>(hlcp, rows, sign) ? status : Status::singular_constraints;
-  // Proofs for more than four contacts bound |W^-1|.
-  if (report.uniqueness == Uniqueness::certified) return status;
-  return has_digits<at_least_one(most_rows<Source>)>(hlcp, rows, sign) ? status : Status::singular_constraints;
+  return status;
 }
 
 /// accelerate() without guides at rest, or with. Two functions, because what holds a guide at rest is not inlined, and

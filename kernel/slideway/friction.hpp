@@ -418,9 +418,9 @@ inline bool independent_contacts(const Hlcp<Capacity>& hlcp, int n) noexcept {
 /// Do contact forces of these signs have six digits? Entries of W(s) carry roundings of eps times the sizes of S and
 /// S*: true if each pivot of Gauss's elimination keeps 2^-30 of the sizes of its terms, whatever the units of rows and
 /// columns. Cost: 2 n^3 / 3.
-template <int Room, int Capacity>
-inline bool has_digits(const Hlcp<Capacity>& hlcp, int n, const signed char* sign) noexcept {
-  double W[Room][Room], terms[Room][Room], own[Room];
+template <int Capacity>
+[[gnu::noinline]] inline bool has_digits(const Hlcp<Capacity>& hlcp, int n, const signed char* sign) noexcept {
+  double W[Capacity][Capacity], terms[Capacity][Capacity], own[Capacity];
   for (int i = 0; i < n; ++i) {
     own[i] = 0.5 * (hlcp.plus[i][i] + hlcp.minus[i][i]);
     for (int j = 0; j < n; ++j) {

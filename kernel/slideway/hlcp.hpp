@@ -38,7 +38,8 @@ inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& sol
   const Word m = bits(problem.minus[0][0]);
   const double b = problem.b[0];
   const Word negative = Word{0} - ((p ^ bits(b)) >> 63);
-  const double x = detail::quotient(b, real(p ^ ((p ^ m) & negative))) + 0.0;
+  const double w = real(p ^ ((p ^ m) & negative));
+  const double x = detail::quotient(b, w) + 0.0;
   // One sign, neither 0 nor infinite nor NaN; x normal, so that the quotient is correctly rounded, or exactly 0.
   const bool usual = ((p ^ m) >> 63) == 0 && is_within(p, 1, infinite - 1) && is_within(m, 1, infinite - 1) &&
                      (is_within(bits(x), bits(0x1p-1022), infinite - 1) || b == 0.0);
@@ -49,6 +50,7 @@ inline void solve_one(const Hlcp<Capacity>& problem, HlcpSolution<Capacity>& sol
   solution.uniqueness = Uniqueness::certified;
   solution.solves = 1;
   solution.residual = 0x1p-53;
+  solution.bounded = std::fabs(real(p)) + std::fabs(real(m)) <= 0x1p22 * std::fabs(w);
 }
 
 /// All ones for the sign -1, else zero.
@@ -119,6 +121,7 @@ inline void accept_pair(HlcpSolution<Capacity>& solution, Pair x, Word negative0
   solution.uniqueness = Uniqueness::certified;
   solution.solves = solves;
   solution.residual = residual;
+  solution.bounded = true;  // by solve_pair
 }
 
 /// n = 2 when the first trial, with this x, was not the solution's: at most three more, while signs change; by the
@@ -180,7 +183,7 @@ template <int Capacity, class Count>
   if (!proven && n <= decidable) return false;
   for (int k = 0; k < n; ++k) solution.x[k] = trial.x[k] + 0.0;  // -0 becomes 0
   for (int k = 0; k < n; ++k) solution.sign[k] = static_cast<signed char>(signs[k] == -1 && trial.x[k] != 0.0 ? -1 : 1);
-  report(solution, Status::ok, proven ? Uniqueness::certified : Uniqueness::unproven, solves, trial.residual);
+  report(solution, Status::ok, proven ? Uniqueness::certified : Uniqueness::unproven, solves, trial.residual, proven);
   return true;
 }
 

@@ -28,6 +28,8 @@ struct HlcpSolution {
   int solves;       ///< sign patterns examined: linear solves, and determinants when an exact decision was needed
   double residual;  ///< bound on max_i |A+ x+ - A- x- - b|_i / (|W||x| + |b|)_i as computed; at most 4 (n + 1) 2^-53
                     ///< when ok
+  bool bounded;     ///< |W^-1| R 1 <= 2^22 is shown, R the sizes of the rows in A+ and A-: of data known to 52 bits x
+                    ///< keeps 30
 };
 
 /// What to do with a problem that is known to have several solutions.

@@ -8,12 +8,13 @@
 namespace slideway::hlcp_detail {
 
 template <int Capacity>
-inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves,
-                   double residual) noexcept {
+inline void report(HlcpSolution<Capacity>& solution, Status status, Uniqueness uniqueness, int solves, double residual,
+                   bool bounded = false) noexcept {
   solution.status = status;
   solution.uniqueness = uniqueness;
   solution.solves = solves;
   solution.residual = residual;
+  solution.bounded = bounded;
 }
 
 template <int Capacity>
