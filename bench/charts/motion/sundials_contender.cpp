@@ -54,11 +54,12 @@ class OdeIntegrator final : public Integrator {
     std::copy(y.begin(), y.end(), data());
     if (solver_ == Solver::runge_kutta) {
       memory_.reset(ERKStepCreate(rates, 0, y_.get(), context_));
-      good_ = ERKStepSStolerances(memory_.get(), tolerance, tolerance) == 0 && ERKStepSetOrder(memory_.get(), 8) == 0 &&
+      good_ = ERKStepSetErrFile(memory_.get(), nullptr) == 0 &&
+              ERKStepSStolerances(memory_.get(), tolerance, tolerance) == 0 && ERKStepSetOrder(memory_.get(), 8) == 0 &&
               ERKStepSetUserData(memory_.get(), &motion) == 0 && ERKStepSetMaxNumSteps(memory_.get(), most_steps) == 0;
     } else {
       memory_.reset(CVodeCreate(solver_ == Solver::adams ? CV_ADAMS : CV_BDF, context_));
-      good_ = CVodeInit(memory_.get(), rates, 0, y_.get()) == 0 &&
+      good_ = CVodeSetErrFile(memory_.get(), nullptr) == 0 && CVodeInit(memory_.get(), rates, 0, y_.get()) == 0 &&
               CVodeSStolerances(memory_.get(), tolerance, tolerance) == 0 &&
               CVodeSetUserData(memory_.get(), &motion) == 0 && CVodeSetMaxNumSteps(memory_.get(), most_steps) == 0;
       if (solver_ == Solver::adams) {  // not stiff: their documentation's choice is fixed-point iteration
