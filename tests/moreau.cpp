@@ -78,6 +78,24 @@ struct RigidBody {
   }
 };
 
+/// How far the forces of a step that ended in `after` are off Coulomb's law, over the largest.
+double violation(const RunStepper& stepper, const RunState& after, const RunStepper::Reaction& r) {
+  double largest = 1, worst = 0;
+  for (int c = 0; c < stepper.source.tables.contacts; ++c) largest = std::fmax(largest, std::fabs(r.lambda[c]));
+  for (int g = 0; g < stepper.source.scene.guides; ++g) {
+    const Guide& guide = stepper.source.scene.guide[g];
+    double limit = 0;
+    for (int c = 0; c < guide.contacts; ++c) {
+      limit += guide.mu * std::fabs(r.lambda[stepper.source.tables.first_contact[g] + c]);
+    }
+    // At rest within the limit; slipping at it, against the slip.
+    const double against = -after.mode[g] * r.friction[g];
+    const double off = after.mode[g] == 0 ? std::fmax(0, std::fabs(r.friction[g]) - limit) : std::fabs(against - limit);
+    worst = std::fmax(worst, off / largest);
+  }
+  return worst;
+}
+
 /// What a run of moreau gains by itself and may gain, J, and how far its forces are off Coulomb's law, over the
 /// largest.
 struct Balance {
@@ -110,19 +128,7 @@ Balance balance_of(const RunStepper& stepper, double dt, double duration) {
     EXPECT_LE(gain, most + rounding) << "at " << from.time();
     sum.gain += gain;
     sum.most += most;
-    for (int g = 0; g < stepper.source.scene.guides; ++g) {
-      const Guide& guide = stepper.source.scene.guide[g];
-      double limit = 0, largest = 1;
-      for (int c = 0; c < guide.contacts; ++c) {
-        limit += guide.mu * std::fabs(r.lambda[stepper.source.tables.first_contact[g] + c]);
-      }
-      for (int c = 0; c < stepper.source.tables.contacts; ++c) largest = std::fmax(largest, std::fabs(r.lambda[c]));
-      // At rest within the limit; slipping at it, against the slip.
-      const double against = -state.mode[g] * r.friction[g];
-      const double off =
-          state.mode[g] == 0 ? std::fmax(0, std::fabs(r.friction[g]) - limit) : std::fabs(against - limit);
-      sum.violation = std::fmax(sum.violation, off / largest);
-    }
+    sum.violation = std::fmax(sum.violation, violation(stepper, state, r));
   }
   for (int j = 0; j < stepper.source.tables.coordinates; ++j) {
     EXPECT_TRUE(std::isfinite(state.q[j]) && std::isfinite(state.v[j]));
@@ -146,6 +152,47 @@ TEST_P(BeyondTheLimit, MoreauGoesOn) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, BeyondTheLimit, testing::ValuesIn(cases),
                          [](const auto& one) { return std::string(one.param.name); });
+
+/// The crank's angle after 1 ms by steps of dt, each checked.
+double angle_after_one_millisecond(const std::string& scene, double dt) {
+  const RunStepper stepper = stepper_of(scene, Method::moreau);
+  RunState state = stepper.start();
+  state.dt = dt;
+  for (int k = 0; k < std::lround(1e-3 / dt); ++k) {
+    RunStepper::Reaction r;
+    EXPECT_EQ(stepper.reaction(state, {}, r).status, Status::ok) << scene;
+    const Report report = stepper.step(state, dt);
+    EXPECT_EQ(report.status, Status::ok) << scene << ": " << sentence(report.status) << " at " << state.time();
+    if (report.status != Status::ok) break;
+    EXPECT_EQ(report.uniqueness, Uniqueness::unproven) << scene;
+    EXPECT_LE(report.solves, 20) << scene;
+    EXPECT_LT(violation(stepper, state, r), 1e-12) << scene;
+  }
+  return state.q[0];
+}
+
+TEST(Moreau, TakesTheLikeliestModeWhereThereAreMoreThanMayBeTried) {
+  for (const char* const scene : {"v_engine_4", "v_engine_8", "v_engine_16"}) {
+    const RunStepper exact = stepper_of(scene, Method::dop853_located);
+    const double truth = run(exact, exact.start(), 1e-4, 10).state.q[0];
+    const double coarse = std::fabs(angle_after_one_millisecond(scene, 2e-5) - truth);
+    const double fine = std::fabs(angle_after_one_millisecond(scene, 5e-6) - truth);
+    EXPECT_GT(coarse / fine, 3) << scene;  // order 1: 4
+    EXPECT_LT(coarse / fine, 5) << scene;
+  }
+}
+
+TEST(Moreau, BringsAnEngineToRest) {
+  RunStepper stepper = stepper_of("v_engine_4", Method::moreau);
+  stepper.stabilise = Stabilise::projection;
+  RunState state = stepper.start();
+  for (double& v : state.v) v *= 0.01;  // near rest it is the contact forces that tell whither a piston goes
+  for (int k = 0; k < 1200; ++k) {
+    const Report report = stepper.step(state, 1e-3);
+    ASSERT_EQ(report.status, Status::ok) << sentence(report.status) << " at " << state.time();
+  }
+  for (int g = 0; g < stepper.source.scene.guides; ++g) EXPECT_EQ(state.mode[g], 0);
+}
 
 TEST(Moreau, IsOfOrderOne) {
   const auto end = [](double dt) {

@@ -37,17 +37,25 @@ class JammedGuides : public RestEquations<Source> {
       Base::bound_count_, Base::size_, Base::trials_, Base::problem_, Base::trial_;
 
   /// Every mode of the open guides, rest first; of each, contact signs from those before on. Capped at max_solves.
+  /// Where that may be too few and guides move, the likeliest is tried first, by an HLCP, and is taken.
   Status decide_jammed(Modes<Size>& m, Report& report) noexcept {
     open_count_ = 0;
     for (int i = 0; i < count_; ++i) {
       if (m.mode[set_[i]] == 0 && !dwells_[set_[i]]) open_[open_count_++] = set_[i];
     }
-    trials_ = 0;
     bool complete = true;
     Modes<Size> found = m, tried = m;
     int solutions = 0;
     long long modes = 1;
     for (int i = 0; i < open_count_; ++i) modes = modes > options_.max_solves ? modes : 3 * modes;
+    long long trials = modes;
+    for (int r = 0; r < rows_; ++r) trials = trials > options_.max_solves ? trials : 2 * trials;
+    int guesses = 0;
+    if (trials > options_.max_solves && go_on(m, guesses)) {
+      note(report, Uniqueness::unproven, guesses);
+      return Status::ok;
+    }
+    trials_ = 0;
     for (long long number = 0; number < modes && complete && solutions < 2; ++number) {
       long long digits = number;
       for (int i = 0; i < open_count_; ++i, digits /= 3) {
@@ -60,7 +68,7 @@ class JammedGuides : public RestEquations<Source> {
       if (solutions == 1 && options_.not_unique == NotUnique::continue_along_signs && number > 0) break;
     }
     if (solutions == 0) {
-      note(report, Uniqueness::unproven, trials_);
+      note(report, Uniqueness::unproven, guesses + trials_);
       return complete ? Status::no_solution : Status::solve_limit;
     }
     const bool rests = held(found);
@@ -68,7 +76,7 @@ class JammedGuides : public RestEquations<Source> {
          solutions > 1         ? Uniqueness::refuted
          : !complete || !rests ? Uniqueness::unproven
                                : Uniqueness::motion_only,
-         trials_);
+         guesses + trials_);
     if (solutions > 1 && options_.not_unique == NotUnique::refuse) return Status::not_unique;
     m = found;
     return Status::ok;
@@ -78,6 +86,46 @@ class JammedGuides : public RestEquations<Source> {
     bool all = true;
     for (int i = 0; i < open_count_; ++i) all = all && m.mode[open_[i]] == 0;
     return all;
+  }
+
+  /// The likeliest mode: guides that move go on as contact forces without friction let them, the others rest; with the
+  /// contact signs that solve it. False, and m as it was, if none moves or that is no solution.
+  bool go_on(Modes<Size>& m, int& solves) noexcept {
+    Modes<Size> tried = m;
+    bool any = false;
+    basis_.forget(contact_rows_);
+    for (int i = 0; i < open_count_; ++i) {
+      const int g = open_[i];
+      const double v = m.leaving[g] ? excess(g) : 0;
+      tried.mode[g] = static_cast<signed char>((v > 0) - (v < 0));
+      any = any || v != 0;
+    }
+    if (!any || !bind(tried)) return false;
+    for (int i = 0; i < count_; ++i) {
+      tried.stiction[set_[i]] = 0;
+      known_[set_[i]] = known_force(tried, set_[i]);
+    }
+    build_in_mode(tried);
+    HlcpSolution<order> answer;
+    for (int r = 0; r < size_; ++r) answer.sign[r] = r < rows_ ? m.sign[contact(r)] : 1;
+    hlcp_solve(answer);
+    solves = answer.solves;
+    if (answer.status != Status::ok) return false;
+    for (int r = 0; r < rows_; ++r) tried.sign[contact(r)] = answer.sign[r];
+    if (!admits(tried)) return false;
+    m = tried;
+    return true;
+  }
+
+  /// A right side far below the rounding of the largest is none: alpha v of a guide at rest dies away exponentially,
+  /// and an exact decision is one of numbers within 2^400 of each other.
+  [[gnu::noinline]] void hlcp_solve(HlcpSolution<order>& answer) noexcept {
+    double largest = 0;
+    for (int r = 0; r < size_; ++r) largest = larger(largest, std::fabs(problem_.b[r]));
+    for (int r = 0; r < size_; ++r) {
+      if (std::fabs(problem_.b[r]) < 0x1p-150 * largest) problem_.b[r] = 0;
+    }
+    solve(problem_, size_, answer, options_);
   }
 
   enum class Feasible : unsigned char { no, yes, unknown };

@@ -49,8 +49,8 @@ class RestProblem : public JammedGuides<Source> {
 
  private:
   using Base::bound_of, Base::contact, Base::decide_jammed, Base::excess, Base::excess_bound, Base::gain,
-      Base::known_force, Base::normal, Base::note, Base::set_motion_row, Base::set_sigma, Base::span_contacts,
-      Base::start_problem, Base::take_guide;
+      Base::hlcp_solve, Base::known_force, Base::normal, Base::note, Base::set_motion_row, Base::set_sigma,
+      Base::span_contacts, Base::start_problem, Base::take_guide;
   using Base::source_, Base::table_, Base::part_, Base::rows_, Base::fr_, Base::set_, Base::count_, Base::T_,
       Base::lack_, Base::mobility_, Base::coefficient_, Base::known_, Base::basis_, Base::contact_rows_, Base::open_,
       Base::open_count_, Base::size_, Base::problem_, Base::roundings_, Base::fixed_, Base::dwells_, Base::jammed_,
@@ -148,17 +148,6 @@ class RestProblem : public JammedGuides<Source> {
       m.bound[open_[i]] = true;
     }
     return Status::ok;
-  }
-
-  /// A right side far below the rounding of the largest is none: alpha v of a guide at rest dies away exponentially,
-  /// and an exact decision is one of numbers within 2^400 of each other.
-  [[gnu::noinline]] void hlcp_solve(HlcpSolution<order>& answer) noexcept {
-    double largest = 0;
-    for (int r = 0; r < size_; ++r) largest = larger(largest, std::fabs(problem_.b[r]));
-    for (int r = 0; r < size_; ++r) {
-      if (std::fabs(problem_.b[r]) < 0x1p-150 * largest) problem_.b[r] = 0;
-    }
-    solve(problem_, size_, answer, options_);
   }
 
   /// Guides that came with a mode are open, too; true if there is one.
