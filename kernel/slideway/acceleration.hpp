@@ -312,7 +312,10 @@ SLIDEWAY_INLINE Status press(const Source& source, int part, Aim aim, const Solv
     if (answer.status != Status::ok) {
       return independent_contacts(hlcp, rows) ? answer.status : Status::singular_constraints;
     }
-    if (!answer.bounded && !has_digits(hlcp, rows, answer.sign)) return Status::singular_constraints;
+    if (!answer.bounded) {
+      const auto signs = answer;  // a copy, so that the answer itself can stay in registers
+      if (!has_digits(hlcp, rows, signs.sign)) return Status::singular_constraints;
+    }
   }
   each_row_in_part(source, part, [&](int i, int c) SLIDEWAY_FOLD {
     r.lambda[c] = answer.x[i];
