@@ -20,8 +20,8 @@ TEST(Claims, OfSolvesAreNoWiderThanWhatASearchMakes) {
   using hlcp_detail::within_limit;
   EXPECT_TRUE(within_limit(0, 0, 100));
   EXPECT_FALSE(within_limit(1, 0, 100));
-  EXPECT_TRUE(within_limit(1 + 6 + 8, 2, 0));  // the first, the flips, and each pattern twice
-  EXPECT_FALSE(within_limit(1 + 6 + 8 + 1, 2, 0));
+  EXPECT_TRUE(within_limit(6 + 6 + 8, 2, 0));  // two iterations, and each pattern twice
+  EXPECT_FALSE(within_limit(6 + 6 + 8 + 1, 2, 0));
   EXPECT_TRUE(within_limit(101, 5, 100));
   EXPECT_FALSE(within_limit(102, 5, 100));
 }

@@ -6,8 +6,9 @@
 // bit of it.
 //
 //   hlcp_problem.hpp   what is asked and answered      hlcp_unique.hpp   proofs that there is one solution
-//   hlcp_trial.hpp     one trial                       hlcp_decide.hpp   n <= 4 decided exactly
-//   hlcp_search.hpp    which signs to try next         hlcp_claims.hpp   what holds of each, for SLIDEWAY_CLAIM
+//   hlcp_pairs.hpp     what it computes with           hlcp_decide.hpp   n <= 4 decided exactly
+//   hlcp_cofactors.hpp orders 2 to 4 by determinants   hlcp_search.hpp   which signs to try next
+//   hlcp_trial.hpp     one trial                       hlcp_claims.hpp   what holds of each, for SLIDEWAY_CLAIM
 //   here               the short ways for n = 1 and 2, and the interface
 #pragma once
 
@@ -160,21 +161,17 @@ template <int Capacity>
   accept_pair(solution, trial.x, negative0, negative1, 1, trial.residual);
 }
 
-/// The signs of x into `signs`; false where one of them rests on rounding.
-template <class Count>
-inline bool take_clear_signs(const double* x, Count n, signed char* signs) noexcept {
-  double largest = 0.0;
-  double least = HUGE_VAL;
-  for (int k = 0; k < n; ++k) {
-    const double size = std::fabs(x[k]);
-    largest = size > largest ? size : largest;
-    least = size < least ? size : least;
-    signs[k] = static_cast<signed char>(x[k] < 0.0 ? -1 : 1);
-  }
-  return least > tie_window * largest;
+/// Whether x, whose signs are clear, is accurate, or becomes so and keeps them.
+template <int Capacity, class Count>
+[[gnu::always_inline]] inline bool stands(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
+                                          Trial<Capacity>& trial) noexcept {
+  check(problem, n, trial);
+  if (trial.accurate) return true;
+  refine(problem, static_cast<int>(n), trial);
+  return trial.accurate && clear(trial.x, n, signs);
 }
 
-/// Takes the trial's x if it is certified, or for n > 4 if it is accurate. Requires clear signs.
+/// Takes the trial's x if it is certified, or for n > 4 as it is. Requires an accurate x of clear signs.
 template <int Capacity, class Count>
 [[gnu::always_inline]] inline bool accept_trial(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial,
                                                 const signed char* signs, int solves,
@@ -188,24 +185,24 @@ template <int Capacity, class Count>
 }
 
 /// n >= 3 when the first trial's signs were not the solution's: the signs that came out are tried next, then those that
-/// come out there (iterate_signs() on the problem as given, and only while all is clear). What that does not settle
-/// starts again with care.
+/// come out there (iterate_signs() on the problem as given). What that does not settle starts again with care.
 template <int Capacity, class Count>
 [[gnu::noinline]] void solve_many_again(const Hlcp<Capacity>& problem, Count n, Trial<Capacity>& trial,
                                         HlcpSolution<Capacity>& solution, HlcpOptions options) noexcept {
   signed char signs[Capacity];
-  Word seen[Capacity + 4] = {code_of(solution.sign, n)};
+  signs_of(code_of(solution.sign, n), n, signs);
+  Word seen[Capacity + 4] = {code_of(signs, n)};
   int solves = 1;
-  while (solves < n + 4 && solves < options.max_solves && take_clear_signs(trial.x, n, signs)) {
+  while (solves < n + 4 && solves < options.max_solves) {
+    take_signs(trial.x, n, signs);
     const Word code = code_of(signs, n);
     bool repeats = false;
     for (int k = 0; k < solves; ++k) repeats = repeats || seen[k] == code;
     if (repeats) break;
     seen[solves++] = code;
-    if (!factor_and_solve(problem, n, signs, trial)) break;
+    if (!solve_unchecked(problem, n, signs, trial)) break;
     if (!clear(trial.x, n, signs)) continue;
-    check(problem, n, trial);
-    if (trial.accurate && accept_trial(problem, n, trial, signs, solves, solution)) return;
+    if (stands(problem, n, signs, trial) && accept_trial(problem, n, trial, signs, solves, solution)) return;
     break;
   }
   solve_with_care(problem, static_cast<int>(n), solution, options, solves);
@@ -216,9 +213,9 @@ template <int Capacity, class Count>
 [[gnu::noinline]] void solve_many(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                                   HlcpOptions options) noexcept {
   Trial<Capacity> trial;
-  if (attempt_many(problem, n, solution.sign, trial)) {
+  if (solve_unchecked(problem, n, solution.sign, trial)) {
     if (!clear(trial.x, n, solution.sign)) return solve_many_again(problem, n, trial, solution, options);
-    if (accept_trial(problem, n, trial, solution.sign, 1, solution)) return;
+    if (stands(problem, n, solution.sign, trial) && accept_trial(problem, n, trial, solution.sign, 1, solution)) return;
   }
   solve_with_care(problem, static_cast<int>(n), solution, options, 1);
 }
@@ -247,7 +244,8 @@ template <int Capacity, class Count>
 /// Every problem with n <= 4 is decided as exact arithmetic does, with two exceptions. A rank that rests on less than
 /// 2^-49 of a minor's terms: the rounding of the data would decide, so singular_constraints. And, rows and b over their
 /// largest entries, an entry below 2^-180 beside which a minor is below 2^-900: underflow would decide, so inaccurate.
-/// Cost: with the right signs one LU factorization, O(n^2) for the certificate; otherwise up to max_solves of them.
+/// Cost: with the right signs one LU factorization (n <= 4: cofactors), O(n^2) for the certificate; otherwise up to
+/// max_solves of them.
 template <int Capacity, class Count>
 inline void solve(const Hlcp<Capacity>& problem, Count n, HlcpSolution<Capacity>& solution,
                   HlcpOptions options = {}) noexcept {

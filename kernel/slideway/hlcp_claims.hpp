@@ -33,9 +33,9 @@ inline bool is_answer(const Hlcp<Capacity>& problem, int n, const HlcpSolution<C
 template <int Capacity>
 inline int sign_by_factors(const Hlcp<Capacity>& problem, int n, const signed char* signs,
                            Trial<Capacity>& trial) noexcept {
-  attempt(problem, n, signs, trial);
   double z[Capacity];
-  int sign = trial.regular && reach_of(trial, n, trial.size, z) <= 0x1p22 ? 1 : 0;
+  int sign =
+      select(problem, n, signs, trial) && factor(n, trial) && reach_of(trial, n, trial.size, z) <= 0x1p22 ? 1 : 0;
   for (int k = 0; k < n && sign != 0; ++k) {
     if (trial.lu[k][k] < 0.0) sign = -sign;
     for (int i = 0; i < k; ++i)
@@ -64,11 +64,11 @@ inline bool has_one_sign(const Hlcp<Capacity>& problem, int n) noexcept {
   return true;
 }
 
-/// Whether no more sign patterns were examined than they may be. n <= 4: the one tried first or, for n = 2, those of
-/// the short way, n + 4 of sign iteration, 2^n determinants and 2^n trials of what they found. Else as many as allowed,
-/// and once more the one that enumeration has found.
+/// Whether no more sign patterns were examined than they may be. n <= 4: n + 4 by the short way, as many by sign
+/// iteration, 2^n determinants and 2^n trials of what they found. Else as many as allowed, and once more the one that
+/// enumeration has found.
 inline bool within_limit(int solves, int n, int max_solves) noexcept {
-  return solves <= (n <= 0 ? 0 : n <= decidable ? 1 + (n + 4) + (2 << n) : max_solves + 1);
+  return solves <= (n <= 0 ? 0 : n <= decidable ? 2 * (n + 4) + (2 << n) : max_solves + 1);
 }
 
 }  // namespace slideway::hlcp_detail

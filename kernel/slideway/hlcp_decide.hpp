@@ -9,6 +9,7 @@
 namespace slideway::hlcp_detail {
 
 inline constexpr int decidable = 4;  ///< the largest order that is decided exactly
+static_assert(decidable == most_by_cofactors, "what determinants do not prove is decided");
 
 /// A sum of doubles without rounding: parts that do not overlap, in order of increasing size (Shewchuk, Discrete
 /// Comput. Geom. 18, 1997, GROW-EXPANSION). The Order! terms of a determinant have at most 2^(Order - 1) parts each.

@@ -146,11 +146,11 @@ inline bool settle(Search<Capacity>& search, const signed char* signs) noexcept 
 }
 
 /// The signs of x; of a zero, the one it had.
-template <int Capacity>
-inline void take_signs(const Search<Capacity>& search, signed char* signs) noexcept {
-  for (int k = 0; k < search.n; ++k) {
-    if (search.trial.x[k] < 0.0) signs[k] = -1;
-    if (search.trial.x[k] > 0.0) signs[k] = 1;
+template <class Count>
+inline void take_signs(const double* x, Count n, signed char* signs) noexcept {
+  for (int k = 0; k < n; ++k) {
+    if (x[k] < 0.0) signs[k] = -1;
+    if (x[k] > 0.0) signs[k] = 1;
   }
 }
 
@@ -183,7 +183,7 @@ inline Found iterate_signs(Search<Capacity>& search, signed char* signs) noexcep
     if (!search.trial.regular) return Found::nothing;
     signed char next[hlcp_max_order];
     std::memcpy(next, signs, sizeof next);
-    take_signs(search, next);
+    take_signs(search.trial.x, search.n, next);
     if (accurate && settle(search, signs)) return Found::solution;
     std::memcpy(signs, next, sizeof next);
   }

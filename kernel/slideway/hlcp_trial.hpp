@@ -2,36 +2,10 @@
 // uniqueness.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <slideway/hlcp_problem.hpp>
+#include <slideway/hlcp_cofactors.hpp>
 #include <slideway/verify.hpp>
-#include <type_traits>
-#include <utility>
 
 namespace slideway::hlcp_detail {
-
-using Word = std::uint64_t;
-typedef double Pair __attribute__((vector_size(16)));
-typedef long long PairBits __attribute__((vector_size(16)));
-
-inline Word bits(double value) noexcept {
-  Word word;
-  std::memcpy(&word, &value, sizeof word);
-  return word;
-}
-
-inline double real(Word word) noexcept {
-  double value;
-  std::memcpy(&value, &word, sizeof value);
-  return value;
-}
-
-inline constexpr Word sign_bit = Word{1} << 63;
-
-/// 2^k for -1022 <= k <= 1023.
-inline double power_of_two(int k) noexcept { return real(static_cast<Word>(k + 1023) << 52); }
 
 /// A component below 2^-20 of the largest may owe its sign to rounding; then the signs are decided anew from a start
 /// that the data alone determine. Why 2^-20: the proofs of uniqueness show |W^-1| R <= 2^22 for every matrix W between
@@ -55,59 +29,10 @@ struct Trial {
   int row[Capacity];
   double reach;     // max of the bound on |W^-1| (|A+ - A-| + allowance * size) 1
   double residual;  // largest componentwise relative backward error
+  bool cofactors;   // x came by cofactors: L and U have not been made
   bool regular;     // no pivot is lost in rounding errors
   bool accurate;    // residual within its limit
 };
-
-inline Pair load(const double* from) noexcept {
-  Pair pair;
-  std::memcpy(&pair, from, sizeof pair);
-  return pair;
-}
-
-/// The same from numbers that were stored one by one just now: such a pair cannot be forwarded from the store buffer in
-/// one piece.
-inline Pair gather(const double* from) noexcept { return Pair{from[0], from[1]}; }
-
-inline void store(double* to, Pair pair) noexcept { std::memcpy(to, &pair, sizeof pair); }
-
-inline Pair magnitude(Pair pair) noexcept {
-  constexpr long long rest = static_cast<long long>(~sign_bit);
-  return (Pair)((PairBits)pair & PairBits{rest, rest});
-}
-
-inline constexpr PairBits sign_bits = {static_cast<long long>(sign_bit), static_cast<long long>(sign_bit)};
-
-inline constexpr PairBits exponent_bits = {2047LL << 52, 2047LL << 52};
-inline constexpr PairBits twice_bias = {2046LL << 52, 2046LL << 52};
-
-/// The sums of both pairs.
-inline Pair sums(Pair a, Pair b) noexcept { return Pair{a[0], b[0]} + Pair{a[1], b[1]}; }
-
-/// `plus` where the mask is zero, `minus` where it is all ones.
-inline Pair choose(Pair plus, Pair minus, PairBits mask) noexcept {
-  return (Pair)((PairBits)plus ^ (((PairBits)plus ^ (PairBits)minus) & mask));
-}
-
-/// (c, -|c|): one multiply-subtract then acts as L or U in the first lane and as its comparison matrix in the second.
-inline Pair comparison(double c) noexcept {
-  return (Pair)((PairBits)Pair{c, c} | PairBits{0, static_cast<long long>(sign_bit)});
-}
-
-template <int... I, class Body>
-[[gnu::always_inline]] inline void each_of(std::integer_sequence<int, I...>, const Body& body) noexcept {
-  (body(I), ...);
-}
-
-/// body(0), ..., body(n - 1); written out one by one when n is a constant, so that the loops inside have constant
-/// bounds.
-template <class Count, class Body>
-[[gnu::always_inline]] inline void each(Count n, const Body& body) noexcept {
-  if constexpr (std::is_same_v<Count, int>)
-    for (int i = 0; i < n; ++i) body(i);
-  else
-    each_of(std::make_integer_sequence<int, Count::value>{}, body);
-}
 
 /// The limit for the residual as computed. Gaussian elimination with one step of refinement in working precision
 /// reaches 2 (n + 1) 2^-53 (Skeel 1980; Higham 2002, theorem 12.4), the evaluation adds (n + 1) 2^-53, one more of
@@ -118,7 +43,11 @@ inline double residual_limit(int n) noexcept { return 4.0 * (n + 1) * 0x1p-53; }
 /// and U, half shows |W^-1| R <= 2^22 (see tie_window).
 inline constexpr double allowance = 0x1p-21;
 
-/// Row i of W(signs) into w and lu; returns sum_j |w_ij| and sum_j |a+_ij - a-_ij|, each in two lanes.
+/// The largest order that is first tried by cofactors; L and U of W are made only when they are needed.
+inline constexpr int most_by_cofactors = 4;
+
+/// Row i of W(signs) into w, above that order into lu too; returns sum_j |w_ij| and sum_j |a+_ij - a-_ij|, each in two
+/// lanes.
 template <int Capacity, class Count>
 [[gnu::always_inline]] inline void select_row(const Hlcp<Capacity>& problem, Count n, int i, const PairBits* minus,
                                               Trial<Capacity>& trial, Pair& entries, Pair& spread) noexcept {
@@ -129,14 +58,24 @@ template <int Capacity, class Count>
     const Pair m = last ? Pair{problem.minus[i][j], 0.0} : load(&problem.minus[i][j]);
     const Pair w = choose(p, m, minus[j / 2]);
     store(&trial.w[i][j], w);
-    store(&trial.lu[i][j], w);
+    if (n > most_by_cofactors) store(&trial.lu[i][j], w);
     entries += magnitude(w);
     spread += magnitude(p - m);
   }
 }
 
-/// Fills w, lu, side, size and weight for W(signs), two rows at a time. Returns false when a row is out of the range
-/// where nothing overflows. (A right side that is not finite shows in the residual.)
+/// The weight and the place of a row, two rows at a time, before elimination.
+template <int Capacity>
+[[gnu::always_inline]] inline void line_up(Trial<Capacity>& trial, int i, int next) noexcept {
+  const PairBits exponent = (PairBits)load(&trial.size[i]) & exponent_bits;
+  store(&trial.weight[i], (Pair)(twice_bias - exponent));
+  trial.row[i] = i;
+  trial.row[next] = next;
+}
+
+/// Fills w, side and size for W(signs), and above most_by_cofactors what elimination needs, two rows at a time. Returns
+/// false when a row is out of the range where nothing overflows. (A right side that is not finite shows in the
+/// residual.)
 template <int Capacity, class Count>
 inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
   PairBits minus[Trial<Capacity>::stride / 2];
@@ -154,13 +93,10 @@ inline bool select(const Hlcp<Capacity>& problem, Count n, const signed char* si
     const Pair perturbation = sums(spread[0], spread[1]);
     const Pair size = perturbation + sums(entries[0], entries[1]);
     const Pair bound = perturbation + Pair{allowance, allowance} * size;
-    const PairBits exponent = (PairBits)size & exponent_bits;
     store(&trial.size[i], size);
-    store(&trial.weight[i], (Pair)(twice_bias - exponent));
+    if (n > most_by_cofactors) line_up(trial, i, next);
     store(trial.side[i], Pair{problem.b[i], bound[0]});
     store(trial.side[next], Pair{problem.b[next], bound[1]});
-    trial.row[i] = i;
-    trial.row[next] = next;
     total += size[0] + size[1];
     least = size[0] < least ? size[0] : least;
     least = size[1] < least ? size[1] : least;
@@ -357,8 +293,8 @@ inline bool pivots_sound(const Trial<Capacity>& trial, int n) noexcept {
   return true;
 }
 
-/// Whether x has the signs and no component is near a tie: every s_k x_k exceeds tie_window * max |x| (or x = 0). False
-/// for NaN.
+/// Whether x has the signs and no component is near a tie: every s_k x_k exceeds tie_window * max |x| (or x = 0). NaN
+/// shows in the residual.
 template <class Count>
 inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
   double largest = 0.0;
@@ -370,32 +306,6 @@ inline bool clear(const double* x, Count n, const signed char* signs) noexcept {
     least = along < least ? along : least;
   }
   return least > tie_window * largest || largest == 0.0;
-}
-
-/// What the two-by-two formula needs beside W: the row sizes |a+_i0| + |a+_i1| + |a-_i0| + |a-_i1|.
-template <int Capacity>
-inline Pair row_sizes(const Hlcp<Capacity>& problem) noexcept {
-  const Pair upper = magnitude(gather(problem.plus[0])) + magnitude(gather(problem.minus[0]));
-  const Pair lower = magnitude(gather(problem.plus[1])) + magnitude(gather(problem.minus[1]));
-  return Pair{upper[0], lower[0]} + Pair{upper[1], lower[1]};
-}
-
-inline double either(bool first, double a, double b) noexcept {
-  const Word mask = Word{0} - static_cast<Word>(first);
-  return real((bits(a) & mask) | (bits(b) & ~mask));
-}
-
-/// (row0, row1) x = b for n = 2: x1 by Cramer's rule, x0 from the row with the larger weighted entry. As stable as
-/// elimination with that pivot (numerator and determinant are its Schur complements times the pivot), with one division
-/// less in the chain.
-inline Pair solve_two(Pair row0, Pair row1, Pair size, Pair b) noexcept {
-  const Pair pivot = {row0[0], row1[0]};
-  const Pair schur = Pair{pivot[0], pivot[0]} * Pair{b[1], row1[1]} - Pair{pivot[1], pivot[1]} * Pair{b[0], row0[1]};
-  const double x1 = detail::quotient(schur[0], schur[1]);
-  const Pair weight = magnitude(pivot) * Pair{size[1], size[0]};
-  const bool first = bits(weight[0]) >= bits(weight[1]);
-  const double rest = either(first, b[0], b[1]) - either(first, row0[1], row1[1]) * x1;
-  return Pair{detail::quotient(rest, either(first, pivot[0], pivot[1])), x1};
 }
 
 /// x += W^-1 rest for n = 1 and n = 2.
@@ -413,10 +323,31 @@ inline void correct_small(const Hlcp<Capacity>& problem, int n, const double* re
   trial.x[0] += detail::quotient(rest[0], trial.w[0][0]);
 }
 
-/// x += W^-1 rest, for n >= 3 by the factors at hand.
+/// L and U of the W that select() has put in place, n >= 3, and with them the forward solves of `side`; whether W is
+/// regular.
+template <int Capacity, class Count>
+inline bool factor(Count n, Trial<Capacity>& trial) noexcept {
+  for (int i = 0; i < n && n <= most_by_cofactors; i += 2) {
+    const int next = i + 1 < n ? i + 1 : i;
+    std::memcpy(trial.lu[i], trial.w[i], sizeof trial.w[i]);
+    std::memcpy(trial.lu[next], trial.w[next], sizeof trial.w[next]);
+    line_up(trial, i, next);
+  }
+  trial.cofactors = false;
+  const double least = eliminate(trial, n);
+  // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
+  trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
+  SLIDEWAY_CLAIM(!trial.regular || reproduces(trial, n));
+  return trial.regular;
+}
+
+/// x += W^-1 rest, for n >= 3 by L and U.
 template <int Capacity>
 inline void correct(const Hlcp<Capacity>& problem, int n, const double* rest, Trial<Capacity>& trial) noexcept {
   if (n <= 2) return correct_small(problem, n, rest, trial);
+  if constexpr (Capacity >= 3)
+    if (trial.cofactors) factor(n, trial);
+  SLIDEWAY_CLAIM(trial.regular);
   double change[Capacity] = {};
   for (int i = 0; i < n; ++i) change[i] = rest[trial.row[i]];
   for (int k = 0; k < n; ++k)
@@ -461,17 +392,47 @@ inline bool attempt_small(const Hlcp<Capacity>& problem, int n, const signed cha
   return trial.accurate;
 }
 
-/// Factors W(signs), n >= 3, and solves: x, not yet checked. Returns whether data in range gave a regular matrix.
+/// For |det W| from this times the product of the row sizes on, cofactors give x. |W^-1| R <= 4 * 2^20 then (see
+/// tie_window), and the reach that they give is off by less than 4 (5 + 8) 2^-53 2^20 < 2^-27 while it is at most 1.
+inline constexpr double well_conditioned = 0x1p-20;
+
+/// Solves with W, n = 3 or 4, by cofactors: x, not yet checked, and reach. False where W is not well conditioned. Not
+/// regular where x is made of products that may have underflowed, as those of rows near 2^-200 do; scaled, they do not.
 template <int Capacity, class Count>
-inline bool factor_and_solve(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
-                             Trial<Capacity>& trial) noexcept {
+[[gnu::always_inline]] inline bool solve_by_cofactors(Count n, Trial<Capacity>& trial) noexcept {
+  const Adjugate adjugate = adjugate_of(trial.w, n);
+  double size = trial.size[0] * trial.size[1] * trial.size[2];
+  Column b = {Pair{trial.side[0][0], trial.side[2][0]}, Pair{trial.side[1][0], 0.0}};
+  Column bound = {Pair{trial.side[0][1], trial.side[2][1]}, Pair{trial.side[1][1], 0.0}};
+  if constexpr (Capacity >= 4) {
+    if (n == 4) {
+      size *= trial.size[3];
+      b.odd[1] = trial.side[3][0];
+      bound.odd[1] = trial.side[3][1];
+    }
+  }
+  trial.cofactors = std::fabs(adjugate.determinant) >= well_conditioned * size;
+  if (!trial.cofactors) return false;
+  const Column(&row)[4] = adjugate.row;
+  const Column numerators = {products(row[0], row[1], b), products(row[2], row[3], b)};
+  trial.regular = largest_of(magnitude(numerators)) >= 0x1p-900 || largest_of(magnitude(b)) == 0.0;
+  const double inverse = detail::quotient(1.0, adjugate.determinant);
+  store(&trial.x[0], numerators.even * Pair{inverse, inverse});
+  store(&trial.x[2], numerators.odd * Pair{inverse, inverse});
+  const Column bounds = {products(magnitude(row[0]), magnitude(row[1]), bound),
+                         products(magnitude(row[2]), magnitude(row[3]), bound)};
+  trial.reach = largest_of(bounds) * std::fabs(inverse);
+  return true;
+}
+
+/// Solves with W(signs), n >= 3: x, not yet checked, and reach. Returns whether data in range gave a regular matrix.
+template <int Capacity, class Count>
+inline bool solve_unchecked(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
+                            Trial<Capacity>& trial) noexcept {
   trial.regular = trial.accurate = false;
   if (!select(problem, n, signs, trial)) return false;
-  const double least = eliminate(trial, n);
-  // Up to n = 16 growth is at most 2^16, so errors stay below 16 * 2^-52 * 2^17 < 2^-26.
-  trial.regular = (n <= 16 && least >= 0x1p-26) || (least >= 0x1p-900 && pivots_sound(trial, n));
-  if (!trial.regular) return false;
-  SLIDEWAY_CLAIM(reproduces(trial, n));
+  if (n <= most_by_cofactors && solve_by_cofactors(n, trial)) return trial.regular;
+  if (!factor(n, trial)) return false;
   substitute(trial, n);
   return true;
 }
@@ -480,7 +441,7 @@ inline bool factor_and_solve(const Hlcp<Capacity>& problem, Count n, const signe
 template <int Capacity, class Count>
 inline bool attempt_many(const Hlcp<Capacity>& problem, Count n, const signed char* signs,
                          Trial<Capacity>& trial) noexcept {
-  if (!factor_and_solve(problem, n, signs, trial)) return false;
+  if (!solve_unchecked(problem, n, signs, trial)) return false;
   check(problem, n, trial);
   if (!trial.accurate) refine(problem, static_cast<int>(n), trial);
   return trial.accurate;
@@ -489,8 +450,9 @@ inline bool attempt_many(const Hlcp<Capacity>& problem, Count n, const signed ch
 /// The same for n >= 1.
 template <int Capacity, class Count>
 inline bool attempt(const Hlcp<Capacity>& problem, Count n, const signed char* signs, Trial<Capacity>& trial) noexcept {
-  if (Capacity <= 2 || n <= 2) return attempt_small(problem, n, signs, trial);
-  return attempt_many(problem, n, signs, trial);
+  if constexpr (Capacity >= 3)
+    if (n >= 3) return attempt_many(problem, n, signs, trial);
+  return attempt_small(problem, n, signs, trial);
 }
 
 }  // namespace slideway::hlcp_detail

@@ -95,58 +95,23 @@ inline bool contracts(const Hlcp<Capacity>& problem, Count n, const Trial<Capaci
   return false;
 }
 
-/// Whether all determinants of W(s), n = 3 or 4, have one strict sign beyond rounding errors: the column W-property
-/// (Sznajder & Gowda 1995). Laplace expansion along pairs of rows: every 2x2 minor is shared by four patterns. n = 3
-/// has a fourth row and column of the unit matrix. Each term has at most 3 + 5 roundings, and the product of the row
-/// sizes bounds the sum of all terms.
-template <int Capacity>
-inline bool determinants_agree(const Hlcp<Capacity>& problem, int n, const Trial<Capacity>& trial) noexcept {
-  static_assert(Capacity >= 3, "rows and columns exist");
-  double column[4][2][4] = {};  // of A+ and A-, each from top to bottom
-  column[3][0][3] = column[3][1][3] = 1.0;
+/// Whether all determinants of W(s), n = 3 or 4, have one strict sign beyond rounding errors, 8 2^-53 times the product
+/// of the row sizes: the column W-property (Sznajder & Gowda 1995).
+template <int Capacity, class Count>
+inline bool determinants_agree(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
   double size = 1.0;
-  for (int i = 0; i < n; ++i) {
-    size *= trial.size[i];
-    for (int j = 0; j < n; ++j) {
-      column[j][0][i] = problem.plus[i][j];
-      column[j][1][i] = problem.minus[i][j];
-    }
-  }
-  constexpr int left[6] = {0, 0, 0, 1, 1, 2};
-  constexpr int right[6] = {1, 2, 3, 2, 3, 3};
-  double upper[6][4];
-  double lower[6][4];
-  for (int pair = 0; pair < 6; ++pair)
-    for (int signs = 0; signs < 4; ++signs) {
-      const double* a = column[left[pair]][signs & 1];
-      const double* c = column[right[pair]][signs >> 1];
-      upper[pair][signs] = a[0] * c[1] - a[1] * c[0];
-      lower[pair][signs] = a[2] * c[3] - a[3] * c[2];
-    }
-  double least = HUGE_VAL;
-  double most = -HUGE_VAL;
-  for (int code = 0; code < (1 << n); ++code) {
-    const auto signs = [&](int pair) { return ((code >> left[pair]) & 1) | (((code >> right[pair]) & 1) << 1); };
-    double det = upper[0][signs(0)] * lower[5][signs(5)];
-    det -= upper[1][signs(1)] * lower[4][signs(4)];
-    det += upper[2][signs(2)] * lower[3][signs(3)];
-    det += upper[3][signs(3)] * lower[2][signs(2)];
-    det -= upper[4][signs(4)] * lower[1][signs(1)];
-    det += upper[5][signs(5)] * lower[0][signs(0)];
-    least = det < least ? det : least;
-    most = det > most ? det : most;
-  }
-  const double doubt = 0x1p-48 * size;
-  return least > doubt || most < -doubt;
+  for (int i = 0; i < n; ++i) size *= trial.size[i];
+  return least_determinant(problem, n) > 0x1p-48 * size;
 }
 
-/// Whether uniqueness is proved for the trial of clear signs: by contraction, for n <= 4 else by the determinants,
-/// where it must be shown separately that x owes no sign to rounding (see tie_window).
+/// Whether uniqueness is proved for the trial of clear signs: by contraction; for n <= 4, if the first step does not
+/// do, by the determinants, where it must be shown separately that x owes no sign to rounding (see tie_window).
 template <int Capacity, class Count>
 inline bool proves(const Hlcp<Capacity>& problem, Count n, const Trial<Capacity>& trial) noexcept {
-  if (contracts(problem, n, trial)) return true;
+  if (n > most_by_cofactors) return contracts(problem, n, trial);
+  if (trial.reach <= contracting) return true;
   double z[Capacity];
-  return n <= 4 && reach_of(trial, n, trial.size, z) <= 0x1p22 && determinants_agree(problem, n, trial);
+  return (trial.cofactors || reach_of(trial, n, trial.size, z) <= 0x1p22) && determinants_agree(problem, n, trial);
 }
 
 }  // namespace slideway::hlcp_detail
