@@ -96,11 +96,11 @@ RC_GTEST_PROP(HlcpProperty, GoesOnAlongTheSigns, ()) {
   RC_ASSERT(check.solved() == (check.exact->count() != oracle::Count::none));
 }
 
-/// Rows and the right side times powers of two: the same bits.
+/// Rows and the right side times powers of two, so far that products of the given numbers underflow: the same bits.
 RC_GTEST_PROP(HlcpProperty, ScalingByPowersOfTwoChangesNoBit, (const HlcpCase& problem)) {
-  const int right = *rc::gen::inRange(-20, 21);
+  const int right = *rc::gen::inRange(-600, 601);
   const auto rows =
-      *rc::gen::container<std::vector<int>>(static_cast<std::size_t>(problem.n), rc::gen::inRange(-20, 21));
+      *rc::gen::container<std::vector<int>>(static_cast<std::size_t>(problem.n), rc::gen::inRange(-190, 191));
   HlcpCase scaled = problem;
   for (int i = 0; i < problem.n; ++i) {
     const int by = rows[static_cast<std::size_t>(i)];
