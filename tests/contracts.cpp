@@ -186,6 +186,16 @@ TEST(Contracts, ContactsAreIndependentWhereNoRoundingCouldMakeThemSo) {
   EXPECT_FALSE(independent(2 * 0x1p-52));
 }
 
+TEST(Contracts, ContactForcesHaveTheDigitsOfTheMatrixOfTheirSigns) {
+  slideway::Hlcp<2> problem{};
+  problem.plus[0][0] = problem.plus[1][1] = 1;
+  problem.minus[0][0] = problem.minus[0][1] = problem.minus[1][0] = 1;
+  problem.minus[1][1] = 1 + 0x1p-40;
+  const signed char plus[2] = {1, 1}, minus[2] = {-1, -1};
+  EXPECT_TRUE(slideway::has_digits(problem, 2, plus));
+  EXPECT_FALSE(slideway::has_digits(problem, 2, minus));
+}
+
 // ---- state.hpp
 
 TEST(Contracts, InputsAreZeroUnlessGiven) {

@@ -1082,6 +1082,26 @@ TEST(Hlcp, GivesTheSameBitsFromManyStartsOfLargeOrder) {
   }
 }
 
+template <int N>
+void expect_no_certificate_for_a_column_that_turns() {
+  Hlcp<N> problem = {};
+  for (int i = 0; i < N; ++i) {
+    problem.plus[i][i] = problem.minus[i][i] = 1;
+    problem.b[i] = 1;
+  }
+  problem.minus[0][0] = -1;  // |x_0| = 1
+  const HlcpSolution<N> solution = answer(problem);
+  ASSERT_EQ(solution.status, Status::ok);
+  EXPECT_EQ(solution.uniqueness, Uniqueness::unproven);
+  EXPECT_FALSE(solution.bounded);
+}
+
+TEST(Hlcp, CertifiesNothingAboveOrderFourWhereAColumnTurns) {
+  expect_no_certificate_for_a_column_that_turns<5>();
+  expect_no_certificate_for_a_column_that_turns<6>();
+  expect_no_certificate_for_a_column_that_turns<17>();
+}
+
 TEST(Hlcp, FindsPivotsInEveryRow) {
   // With the rows turned upside down, every pivot is in the row that is last but k; what is eliminated is the same.
   std::mt19937_64 random(13);

@@ -125,6 +125,18 @@ TEST(Cofactors, LeaveIllConditionedProblemsToElimination) {
   }
 }
 
+TEST(Cofactors, ServeFromTheirLimitOn) {
+  const signed char plus[4] = {1, 1, 1, 1};
+  for (const double beside : {1023.0, 1024.0}) {  // det W = 1, rows of 1024, 1024, 1, 1: just 2^20; or 1025
+    Hlcp<4> problem = {};
+    for (int i = 0; i < 4; ++i) problem.plus[i][i] = problem.minus[i][i] = 1;
+    for (int i = 0; i < 2; ++i) problem.plus[i][i + 1] = problem.minus[i][i + 1] = beside;
+    hlcp_detail::Trial<4> trial;
+    ASSERT_TRUE(hlcp_detail::solve_unchecked(problem, std::integral_constant<int, 4>{}, plus, trial));
+    EXPECT_EQ(trial.cofactors, beside < 1024);
+  }
+}
+
 TEST(Cofactors, ThatMissAnEquationAreRepairedByElimination) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> number(-1, 1);

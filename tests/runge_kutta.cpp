@@ -68,4 +68,20 @@ TEST(AStepOfAnOscillation, ThatMovesNothingIsNotTooLong) {
   EXPECT_FALSE(is_too_long<slideway::dormand_prince_8>(10, 0x1p-60, 0, 0));
 }
 
+TEST(Stages, TurnFarFromHalfARadianOnWhereThereIsFriction) {
+  slideway::Tables<Size> tables = oscillators().tables;
+  const double from[2] = {0, 1};
+  const auto turns_far = [&](double slide, double turn) {
+    const double to[2] = {from[0] + slide, from[1] + turn};
+    Source source = oscillators();
+    source.tables = tables;
+    return slideway::turns_far(source, from, to);
+  };
+  EXPECT_FALSE(turns_far(0, 3));
+  tables.rough = 1;
+  EXPECT_FALSE(turns_far(3, 0.49));
+  EXPECT_TRUE(turns_far(0, 0.51));
+  EXPECT_TRUE(turns_far(0, -0.51));
+}
+
 }  // namespace
