@@ -77,6 +77,8 @@ TEST_P(Order, IsKeptAcrossEvents) {
   RecordProperty("dop853_located", testing::PrintToString(dop853));
 }
 
+// The belt's gains hold what rounding makes of the block's angle: without them one rounding of a contact force turns it
+// by 5e-12 rad in 40 s.
 INSTANTIATE_TEST_SUITE_P(Scenes, Order,
                          testing::Values(Case{"slider_crank", {"guide.way.mu=0.2"}, 0.06, 8, 600, 150},
                                          Case{"crank_rocker_free", {}, 2.6, 8, 400, 60},
